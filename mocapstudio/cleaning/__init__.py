@@ -1,0 +1,1 @@
+"""From neighbours to digression map, flags and proposals (paper 1)."""

@@ -1,0 +1,1 @@
+"""Two performances side by side (papers 3 and 4)."""

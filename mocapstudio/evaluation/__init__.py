@@ -1,0 +1,1 @@
+"""The benchmark in the box: error injection, scoring, the demo take."""

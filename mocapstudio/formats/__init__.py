@@ -1,0 +1,1 @@
+"""Reading and writing takes, one module a file format."""

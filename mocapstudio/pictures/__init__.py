@@ -1,0 +1,1 @@
+"""Maps, poses and curves as image files, without a window."""

@@ -1,0 +1,1 @@
+"""The document of a sitting, without Qt."""
