@@ -28,13 +28,15 @@ def body_frame(skeleton: Skeleton) -> Array:
     parts = topology(skeleton)
     rest = skeleton.rest_positions
     legs = {limb.name: limb.joints for limb in parts.limbs if limb.name.endswith("leg")}
-    trunk = parts.limbs[0].joints
+    trunk = [j for j in parts.limbs[0].joints if j > parts.hips]
     if "left leg" not in legs or "right leg" not in legs:
         return rot.IDENTITY.copy()
     left_leg, right_leg = _reach(skeleton, legs["left leg"]), _reach(skeleton, legs["right leg"])
     left = left_leg - right_leg
-    up = rest[trunk[-1]] - rest[parts.hips]
-    if np.linalg.norm(up) < 1e-6 or np.linalg.norm(np.cross(left, up)) < 1e-9:
+    # The nearest bone of the trunk: where the rest pose is no standing pose, farther ones mislead.
+    rises = (rest[j] - rest[parts.hips] for j in trunk)
+    up = next((v for v in rises if np.linalg.norm(v) > 1e-6), np.zeros(3))
+    if np.linalg.norm(np.cross(left, up)) < 1e-9:
         return rot.IDENTITY.copy()
     left = left - up * (left @ up) / (up @ up)
     left, up = left / np.linalg.norm(left), up / np.linalg.norm(up)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
+_CONJUGATE = np.array([-1.0, -1.0, -1.0, 1.0])
 _AXES = {"X": 0, "Y": 1, "Z": 2}
 
 
@@ -34,7 +35,7 @@ def multiply(a: Array, b: Array) -> Array:
 
 def conjugate(q: Array) -> Array:
     """Inverse rotation of unit quaternions."""
-    return q * np.array([-1.0, -1.0, -1.0, 1.0])
+    return np.asarray(q * _CONJUGATE)
 
 
 def normalize(q: Array) -> Array:
@@ -47,8 +48,7 @@ def rotate(q: Array, v: Array) -> Array:
     """Rotate vectors (..., 3) by quaternions (..., 4)."""
     u, w = q[..., :3], q[..., 3:]
     t = 2.0 * np.cross(u, v)
-    result: Array = v + w * t + np.cross(u, t)
-    return result
+    return np.asarray(v + w * t + np.cross(u, t), dtype=np.float64)
 
 
 def log(q: Array) -> Array:
