@@ -1,0 +1,195 @@
+"""Colours and type of the desk: two themes, one style sheet."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from string import Template
+
+from PySide6.QtGui import QColor, QFont, QFontDatabase, QPalette
+from PySide6.QtWidgets import QApplication
+
+from mocapstudio.gui import resources
+from mocapstudio.review.model import Verdict
+
+
+@dataclass(frozen=True)
+class Theme:
+    """Colours as ``#rrggbb``; the verdicts are told apart by the colour-blind as well.
+
+    The verdict colours follow Okabe and Ito's set (bluish green, vermilion, reddish purple,
+    yellow), set lighter or darker for the background. `colormap` is a name of
+    `pyqtgraph.colormap.get`.
+    """
+
+    name: str
+    background: str
+    panel: str
+    raised: str
+    field: str
+    border: str
+    text: str
+    muted: str
+    faint: str
+    accent: str
+    accent_text: str
+    selection: str
+    accepted: str
+    rejected: str
+    deferred: str
+    open: str
+    protected: str
+    original: str
+    proposal: str
+    result: str
+    playhead: str
+    body: str
+    partner: str
+    neighbour: str
+    viewport_top: str
+    viewport_bottom: str
+    floor: str
+    colormap: str
+
+    def verdict(self, verdict: Verdict) -> str:
+        """Colour of a verdict."""
+        colours = {
+            Verdict.ACCEPTED: self.accepted,
+            Verdict.REJECTED: self.rejected,
+            Verdict.DEFERRED: self.deferred,
+            Verdict.OPEN: self.open,
+        }
+        return colours[verdict]
+
+
+DARK = Theme(
+    name="dark",
+    background="#15171b",
+    panel="#1b1e23",
+    raised="#272b33",
+    field="#121418",
+    border="#30353f",
+    text="#e4e7ec",
+    muted="#99a1ae",
+    faint="#626a77",
+    accent="#4da3ff",
+    accent_text="#0b1017",
+    selection="#24405f",
+    accepted="#2fbf94",
+    rejected="#f0803c",
+    deferred="#cf8fc0",
+    open="#f2cf4a",
+    protected="#7f8896",
+    original="#c3c8d1",
+    proposal="#5cb8f0",
+    result="#2fbf94",
+    playhead="#ffffff",
+    body="#cfd4dc",
+    partner="#7a8494",
+    neighbour="#a08fd6",
+    viewport_top="#23272f",
+    viewport_bottom="#121418",
+    floor="#363c47",
+    colormap="inferno",
+)
+
+LIGHT = Theme(
+    name="light",
+    background="#e9ebef",
+    panel="#f6f7f9",
+    raised="#ffffff",
+    field="#ffffff",
+    border="#cdd2da",
+    text="#1b1f26",
+    muted="#59616e",
+    faint="#8d95a1",
+    accent="#1a6fd4",
+    accent_text="#ffffff",
+    selection="#cfe2fa",
+    accepted="#00805d",
+    rejected="#c04f00",
+    deferred="#9c4f86",
+    open="#a37800",
+    protected="#7f8896",
+    original="#4b535f",
+    proposal="#1580c4",
+    result="#00805d",
+    playhead="#111418",
+    body="#5c6573",
+    partner="#a4acb8",
+    neighbour="#7765bd",
+    viewport_top="#f3f5f8",
+    viewport_bottom="#d5dae2",
+    floor="#b4bbc6",
+    colormap="CET-L18",
+)
+
+THEMES = {theme.name: theme for theme in (DARK, LIGHT)}
+
+_current = DARK
+
+
+def current() -> Theme:
+    """Return the theme in force."""
+    return _current
+
+
+def apply(app: QApplication, theme: Theme) -> None:
+    """Put a theme in force: palette, type and style sheet of the whole application."""
+    global _current
+    _current = theme
+    app.setStyle("Fusion")
+    app.setPalette(_palette(theme))
+    app.setFont(_font())
+    icons = (resources.folder() / "icons").as_posix()
+    sheet = Template(resources.text("styles/desk.qss"))
+    app.setStyleSheet(sheet.substitute(asdict(theme), icons=icons))
+
+
+def numbers_font() -> QFont:
+    """Return the type for figures in tables and read-outs: the text's, with equal-width digits."""
+    font = QFont(_font())
+    font.setFeature(QFont.Tag("tnum"), 1)
+    return font
+
+
+def _font() -> QFont:
+    families = set(QFontDatabase.families())
+    wanted = ("Inter", "Segoe UI", "SF Pro Text", "Noto Sans", "Cantarell", "DejaVu Sans")
+    family = next((name for name in wanted if name in families), QFont().family())
+    font = QFont(family)
+    # DejaVu runs a tenth wider than the others.
+    font.setPixelSize(12 if family == "DejaVu Sans" else 13)
+    return font
+
+
+def _palette(theme: Theme) -> QPalette:
+    roles = {
+        QPalette.ColorRole.Window: theme.panel,
+        QPalette.ColorRole.WindowText: theme.text,
+        QPalette.ColorRole.Base: theme.field,
+        QPalette.ColorRole.AlternateBase: theme.panel,
+        QPalette.ColorRole.Text: theme.text,
+        QPalette.ColorRole.PlaceholderText: theme.faint,
+        QPalette.ColorRole.Button: theme.raised,
+        QPalette.ColorRole.ButtonText: theme.text,
+        QPalette.ColorRole.BrightText: theme.rejected,
+        QPalette.ColorRole.Highlight: theme.selection,
+        QPalette.ColorRole.HighlightedText: theme.text,
+        QPalette.ColorRole.ToolTipBase: theme.raised,
+        QPalette.ColorRole.ToolTipText: theme.text,
+        QPalette.ColorRole.Link: theme.accent,
+        QPalette.ColorRole.Accent: theme.accent,
+        QPalette.ColorRole.Mid: theme.border,
+        QPalette.ColorRole.Dark: theme.border,
+        QPalette.ColorRole.Light: theme.raised,
+    }
+    palette = QPalette()
+    for role, colour in roles.items():
+        palette.setColor(role, QColor(colour))
+    for role in (
+        QPalette.ColorRole.Text,
+        QPalette.ColorRole.WindowText,
+        QPalette.ColorRole.ButtonText,
+    ):
+        palette.setColor(QPalette.ColorGroup.Disabled, role, QColor(theme.faint))
+    return palette
