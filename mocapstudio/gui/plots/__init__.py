@@ -1,0 +1,1 @@
+"""What the plots of the desk are made of: time, rows, colours, curves."""

@@ -1,0 +1,1 @@
+"""The parts of the desk, each fed by the document and none by another."""
