@@ -8,7 +8,7 @@ from string import Template
 from PySide6.QtGui import QColor, QFont, QFontDatabase, QPalette
 from PySide6.QtWidgets import QApplication
 
-from mocapstudio.gui import resources
+from mocapstudio.resource_files import resource
 from mocapstudio.review.model import Verdict
 
 
@@ -140,8 +140,8 @@ def apply(app: QApplication, theme: Theme) -> None:
     app.setStyle("Fusion")
     app.setPalette(_palette(theme))
     app.setFont(_font())
-    icons = (resources.folder() / "icons").as_posix()
-    sheet = Template(resources.text("styles/desk.qss"))
+    icons = resource("icons").as_posix()
+    sheet = Template(resource("styles", "desk.qss").read_text("utf-8"))
     app.setStyleSheet(sheet.substitute(asdict(theme), icons=icons))
 
 

@@ -1,0 +1,199 @@
+"""Long work in threads: the only module of the desk that knows them.
+
+A job is a generator that yields `Progress` and returns its result. It runs on a thread of the
+pool; everything it reports arrives in the thread of `Jobs`, which is the desk's.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable, Generator
+from dataclasses import dataclass
+from typing import Any
+
+from PySide6.QtCore import QObject, QRunnable, Qt, QThreadPool, Signal
+
+from mocapstudio.motion.progress import Progress
+
+Work = Generator[Progress, None, Any]
+_REPORT_EVERY = 0.05
+_SETTLE = 0.5
+
+
+class Job(QObject):
+    """One piece of work under way.
+
+    Parameters
+    ----------
+    title
+        What is being done, for the user.
+    key
+        Jobs of one key supersede each other: starting one cancels the one before, and whatever
+        the old one still delivers is dropped.
+    parent
+        Qt's parent.
+    """
+
+    progressed = Signal(object)
+    """Emitted with the latest `Progress`."""
+
+    ended = Signal()
+    """Emitted once, whatever the end was."""
+
+    def __init__(self, title: str, key: str, parent: QObject) -> None:
+        super().__init__(parent)
+        self.title = title
+        self.key = key
+        self.progress = Progress(0.0, title)
+        self._started = time.monotonic()
+        self._stop = threading.Event()
+
+    @property
+    def cancelled(self) -> bool:
+        """Whether the user, or a newer job of the same key, asked this one to stop."""
+        return self._stop.is_set()
+
+    def cancel(self) -> None:
+        """Ask the work to stop at its next yield; its result will not be delivered."""
+        self._stop.set()
+
+    def seconds_left(self) -> float | None:
+        """Estimate of the time left, or None while it is too early to tell."""
+        spent = time.monotonic() - self._started
+        if self.progress.done <= 0.02 or spent < _SETTLE:
+            return None
+        return spent * (1.0 - self.progress.done) / self.progress.done
+
+
+@dataclass(frozen=True)
+class _Message:
+    job: Job
+    kind: str
+    value: Any
+
+
+class _Runner(QRunnable):
+    """Drives one generator on a thread of the pool and reports by one signal."""
+
+    def __init__(self, job: Job, work: Work, report: Callable[[_Message], None]) -> None:
+        super().__init__()
+        self.setAutoDelete(False)
+        self._job, self._work, self._report = job, work, report
+
+    def run(self) -> None:
+        _yield_to_the_desk()
+        # Whatever goes wrong in the work must reach the desk, or the job would never end there.
+        try:
+            message = self._drive()
+        except BaseException as error:
+            message = _Message(self._job, "failed", error)
+        try:
+            self._work.close()
+        except BaseException as error:
+            message = _Message(self._job, "failed", error)
+        self._report(message)
+
+    def _drive(self) -> _Message:
+        reported = 0.0
+        while not self._job.cancelled:
+            try:
+                progress = next(self._work)
+            except StopIteration as stop:
+                return _Message(self._job, "result", stop.value)
+            now = time.monotonic()
+            if now - reported >= _REPORT_EVERY:
+                reported = now
+                self._report(_Message(self._job, "progress", progress))
+        return _Message(self._job, "cancelled", None)
+
+
+class Jobs(QObject):
+    """Runs generators in threads and hands results, failures and progress to the desk's thread."""
+
+    changed = Signal()
+    """Emitted when a job starts, progresses or ends."""
+
+    _arrived = Signal(object)
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._pool = QThreadPool(self)
+        self._pool.setMaxThreadCount(3)
+        self._running: dict[Job, tuple[_Runner, Callable[[Any], None], Callable[..., None]]] = {}
+        self._arrived.connect(self._receive, Qt.ConnectionType.QueuedConnection)
+
+    @property
+    def running(self) -> tuple[Job, ...]:
+        """Jobs under way that were not cancelled, oldest first."""
+        return tuple(job for job in self._running if not job.cancelled)
+
+    def start(
+        self,
+        title: str,
+        work: Work,
+        on_result: Callable[[Any], None],
+        on_failure: Callable[[BaseException], None],
+        *,
+        key: str | None = None,
+    ) -> Job:
+        """Start work on a thread.
+
+        Parameters
+        ----------
+        title
+            What is being done, for the user.
+        work
+            The generator; cancelling closes it between two yields.
+        on_result, on_failure
+            Called in the desk's thread with the generator's value or its exception, unless the
+            job was cancelled.
+        key
+            See `Job`; by default a key of its own.
+        """
+        job = Job(title, key or f"{title} {id(work)}", self)
+        for other in self.running:
+            if key is not None and other.key == key:
+                other.cancel()
+        runner = _Runner(job, work, self._arrived.emit)
+        self._running[job] = (runner, on_result, on_failure)
+        self._pool.start(runner)
+        self.changed.emit()
+        return job
+
+    def cancel(self, key: str | None = None) -> None:
+        """Cancel the jobs of one key, or all of them."""
+        for job in self.running:
+            if key is None or job.key == key:
+                job.cancel()
+        self.changed.emit()
+
+    def wait(self, seconds: float) -> bool:
+        """Wait for the threads to end; tell whether they did."""
+        return self._pool.waitForDone(int(seconds * 1000))
+
+    def _receive(self, message: _Message) -> None:
+        job = message.job
+        if message.kind == "progress":
+            job.progress = message.value
+            if not job.cancelled:
+                job.progressed.emit(message.value)
+                self.changed.emit()
+            return
+        _, on_result, on_failure = self._running.pop(job)
+        cancelled = job.cancelled
+        job.ended.emit()
+        job.deleteLater()
+        self.changed.emit()
+        if not cancelled and message.kind == "result":
+            on_result(message.value)
+        elif not cancelled and message.kind == "failed":
+            on_failure(message.value)
+
+
+def _yield_to_the_desk() -> None:
+    # Linux schedules threads one by one; elsewhere the setting would hit the whole process.
+    if sys.platform.startswith("linux"):
+        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), 10)
