@@ -152,12 +152,14 @@ class Protected:
 class QueueItem:
     """One line of the queue: a flag with its verdict.
 
-    `current` is False for a decided flag that the latest analysis no longer raises.
+    `current` is False for a decided flag that the latest analysis no longer raises. `decision` is
+    the decision behind the verdict (whose flag may be an earlier one), None while open.
     """
 
     flag: Flag
     verdict: Verdict
     current: bool = True
+    decision: Decision | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,90 @@
+"""The edit list replayed over the immutable source."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
+
+from mocapstudio.motion.declared import Declared
+from mocapstudio.motion.facing import carrier
+from mocapstudio.motion.take import Take
+from mocapstudio.review.model import Edit
+from mocapstudio.review.rows import union
+
+
+def replay(take: Take, edits: Iterable[Edit]) -> Take:
+    """Put the samples of unmuted edits over a take, in order: later ones win where they overlap.
+
+    Parameters
+    ----------
+    take
+        The source; never written to.
+    edits
+        Edits of this take's performer.
+
+    Returns
+    -------
+    Take
+        `take` itself where no edit is in force. Samples that no edit covers are bit for bit those
+        of the source.
+    """
+    in_force = [edit for edit in edits if not edit.muted]
+    if not in_force:
+        return take
+    rotations = take.rotations.copy()
+    moves = any(edit.translations is not None for edit in in_force)
+    translations = take.translations.copy() if moves else take.translations
+    for edit in in_force:
+        span = slice(edit.start, edit.end)
+        joints = [take.skeleton.index[name] for name in edit.joints]
+        rotations[span, joints] = edit.rotations
+        if edit.translations is not None:
+            translations[span, carrier(take)] = edit.translations
+    rotations.setflags(write=False)
+    if moves:
+        translations.setflags(write=False)
+    return take.with_motion(rotations, translations)
+
+
+def declared(edits: Iterable[Edit]) -> tuple[Declared, ...]:
+    """Rows × spans that unmuted edits may change, joined where they touch."""
+    return union(
+        Declared(row, edit.start, edit.end) for edit in edits if not edit.muted for row in edit.rows
+    )
+
+
+class Results:
+    """Results of replay, one remembered for each performer and recognised by identity."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, tuple[Take, tuple[Edit, ...], Take]] = {}
+
+    def of(
+        self, performer: str, take: Take, edits: Iterable[Edit], trim: tuple[int, int] | None
+    ) -> Take:
+        """Return the replayed take with its trim; the same object while nothing changes."""
+        in_force = tuple(edit for edit in edits if not edit.muted)
+        source, known, result = self._known.get(performer, (None, (), take))
+        alike = len(known) == len(in_force) and all(
+            a is b for a, b in zip(known, in_force, strict=True)
+        )
+        if source is not take or not alike:
+            result = replay(take, in_force)
+        if result.trim != trim:
+            result = replace(result, trim=trim)
+        self._known[performer] = (take, in_force, result)
+        return result
+
+    def forget(self, performer: str) -> None:
+        """Let go of one performer's result."""
+        self._known.pop(performer, None)
+
+
+def changed_samples(before: Take, after: Take) -> tuple[np.ndarray, np.ndarray]:
+    """Where two takes of one shape differ: (F, J) of rotations, (F, T) of translations."""
+    rotations = (before.rotations != after.rotations).any(axis=2)
+    translations = (before.translations != after.translations).any(axis=2)
+    both_nan = np.isnan(before.rotations).all(axis=2) & np.isnan(after.rotations).all(axis=2)
+    return rotations & ~both_nan, translations
