@@ -1,0 +1,107 @@
+"""Takes and contexts as the command line names them: files, folders, some of them bad."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from mocapstudio import formats
+from mocapstudio.cli.errors import BAD_INPUT, DONE, complain, is_bad_input
+from mocapstudio.cli.joint_map import read_joint_map, rename_joints
+from mocapstudio.cli.take_options import TakeOptions
+from mocapstudio.motion.errors import CancelledError
+from mocapstudio.motion.take import Take
+
+_SHOWN_PROBLEMS = 3
+
+
+@dataclass
+class Workload:
+    """Reads the takes of one command; a bad one is complained about and the rest goes on."""
+
+    options: TakeOptions
+    failed: bool = False
+    _read: dict[Path, list[Take]] = field(default_factory=dict)
+
+    @property
+    def exit_code(self) -> int:
+        """What the command leaves with."""
+        return BAD_INPUT if self.failed else DONE
+
+    @contextmanager
+    def going_on(self) -> Iterator[None]:
+        """Turn an error of one take into a complaint, so that the others are still processed."""
+        try:
+            yield
+        except CancelledError:
+            raise
+        except Exception as error:
+            if not is_bad_input(error):
+                raise
+            complain(error)
+            self.failed = True
+
+    def files(self, paths: Sequence[Path]) -> list[Path]:
+        """Return the files of takes, each once: files as named, folders searched recursively."""
+        found: dict[Path, Path] = {}
+        for path in paths:
+            with self.going_on():
+                for file in formats.find_takes([path]):
+                    found.setdefault(file.resolve(), file)
+        return list(found.values())
+
+    def read(self, path: Path) -> list[Take]:
+        """Read the takes of a file; what had to be repaired in it is told on standard error.
+
+        Raises
+        ------
+        FileError
+            If the file cannot be read as takes.
+        """
+        known = self._read.get(path.resolve())
+        if known is not None:
+            return known
+        takes, report = formats.read(path, self.options.reading())
+        _warn(report)
+        return takes
+
+    def context(self, paths: Sequence[Path] | None) -> tuple[Take, ...]:
+        """Read the takes of a context, joints renamed by the joint map; bad ones are left out."""
+        takes: list[Take] = []
+        for path in self.files(paths or ()):
+            with self.going_on():
+                takes += self._read.setdefault(path.resolve(), self.read(path))
+        if self.options.joint_map is None:
+            return tuple(takes)
+        names = read_joint_map(self.options.joint_map)
+        return tuple(rename_joints(take, names) for take in takes)
+
+
+def without_itself(context: Sequence[Take], take: Take) -> tuple[Take, ...]:
+    """Leave out of a context the take itself: the same file, or the same content elsewhere."""
+    return tuple(other for other in context if not _same(other, take))
+
+
+def _same(one: Take, other: Take) -> bool:
+    if one.source is None or other.source is None:
+        return one is other
+    if one.source.performer != other.source.performer:
+        return False
+    return (
+        one.source.digest == other.source.digest
+        or one.source.path.resolve() == other.source.path.resolve()
+    )
+
+
+def _warn(report: formats.ImportReport) -> None:
+    # Every file leaves something to a guess; the import report tells of those.
+    repaired = [problem for problem in report.problems if not problem.guess]
+    for problem in repaired[:_SHOWN_PROBLEMS]:
+        place = "-" if problem.line is None else problem.line
+        print(f"warning: {report.path}: {place}: {problem.what}; {problem.done}", file=sys.stderr)
+    more = len(repaired) - _SHOWN_PROBLEMS
+    if more > 0:
+        print(f"warning: {report.path}: -: {more} more, see mocapstudio inspect", file=sys.stderr)
