@@ -1,0 +1,236 @@
+"""BVH: from a file's bytes to takes and an import report."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapstudio.formats.bvh_hierarchy import Hierarchy, parse_hierarchy
+from mocapstudio.formats.bvh_motion import MotionBlock, Reading, parse_motion
+from mocapstudio.formats.bvh_take import Layout, lay_out, motion
+from mocapstudio.formats.guesses import (
+    NO_RATE,
+    guess_unit,
+    guess_up,
+    rate_from_frame_time,
+    starts_in_t_pose,
+    turn_to_y_up,
+)
+from mocapstudio.formats.options import ReadOptions, Up
+from mocapstudio.formats.report import ImportReport, Problem
+from mocapstudio.motion import rotations as rot
+from mocapstudio.motion.skeleton import Skeleton
+from mocapstudio.motion.take import Source, Take
+
+Array = NDArray[np.float64]
+
+_MOTION = re.compile(rb"(?:^|[\r\n}])[ \t]*(MOTION)\b", re.IGNORECASE)
+_BEGINS = re.compile(rb"\s*HIERARCHY\b", re.IGNORECASE)
+_BOM = b"\xef\xbb\xbf"
+
+
+@dataclass(frozen=True, eq=False)
+class BvhRecord:
+    """What the writer needs to copy a take's text: the bytes, and where its numbers stand."""
+
+    data: bytes
+    block: MotionBlock
+    layout: Layout
+
+
+def looks_like_bvh(head: bytes) -> bool:
+    """Tell BVH by its first bytes."""
+    return _BEGINS.match(head.removeprefix(_BOM)) is not None
+
+
+def read_bvh(path: Path, data: bytes, options: ReadOptions) -> tuple[list[Take], ImportReport]:
+    """Read every performer and every motion of a BVH file.
+
+    Raises
+    ------
+    FileError
+        Where the bytes are no BVH, are cut off or hold values that are no numbers.
+    """
+    reading = Reading(path, data, options.lenient, [])
+    sections = _sections(reading)
+    digest = hashlib.sha256(data).hexdigest()
+    takes: list[Take] = []
+    for hierarchies, block, numbers in sections:
+        for hierarchy in hierarchies:
+            takes.append(_take(reading, hierarchy, block, numbers, options, digest, len(takes)))
+    takes = _named(takes)
+    problems = sorted(reading.problems, key=lambda p: (p.guess, p.line or 0))
+    return takes, ImportReport(path, "bvh", tuple(dict.fromkeys(problems)))
+
+
+def _sections(reading: Reading) -> list[tuple[list[Hierarchy], MotionBlock, Array]]:
+    data = reading.data
+    start = len(_BOM) if data.startswith(_BOM) else 0
+    if start:
+        reading.problems.append(Problem(1, "byte order mark", "skipped, kept in the file"))
+    if not _BEGINS.match(data, start):
+        raise reading.error(start, "not BVH: it does not begin with HIERARCHY")
+    sections: list[tuple[list[Hierarchy], MotionBlock, Array]] = []
+    hierarchies, columns = list[Hierarchy](), 0
+    while start < len(data):
+        keyword = _MOTION.search(data, start)
+        if keyword is None:
+            raise reading.error(len(data.rstrip()), "cut off: no MOTION after the hierarchy")
+        if _BEGINS.match(data, start):
+            text = _decode(reading, start, keyword.start(1))
+            hierarchies, columns = parse_hierarchy(
+                text, reading.path, reading.line(start), reading.problems
+            )
+        end = _next_section(data, keyword.end(1))
+        block, numbers = parse_motion(reading, keyword.end(1), end, columns)
+        sections.append((hierarchies, block, numbers))
+        start = end
+    return sections
+
+
+def _next_section(data: bytes, start: int) -> int:
+    found = [data.find(word, start) for word in (b"MOTION", b"HIERARCHY")]
+    return min((at for at in found if at >= 0), default=len(data))
+
+
+def _decode(reading: Reading, start: int, end: int) -> str:
+    raw = reading.data[start:end]
+    try:
+        return raw.decode("utf-8")
+    except UnicodeDecodeError as bad:
+        line = reading.line(start + bad.start)
+        what = "bytes that are not UTF-8"
+        reading.problems.append(Problem(line, what, "read as Latin-1, kept in the file"))
+        return raw.decode("latin-1")
+
+
+def _take(
+    reading: Reading,
+    hierarchy: Hierarchy,
+    block: MotionBlock,
+    numbers: Array,
+    options: ReadOptions,
+    digest: str,
+    performer: int,
+) -> Take:
+    layout = lay_out(hierarchy, numbers, options.angles == "radians")
+    rotations, translations = motion(layout, numbers)
+    if layout.additive:
+        what = "position channels below the root are all but zero"
+        reading.problems.append(Problem(None, what, "added to the OFFSETs"))
+    rate = _rate(reading, block, options)
+    unit = _unit(reading, layout.skeleton, options)
+    up = _up(reading, layout, rotations, translations, options)
+    record = BvhRecord(reading.data, block, layout)
+    source = Source(reading.path, "bvh", digest, unit, turn_to_y_up(up), performer, record)
+    return Take(
+        name=reading.path.stem,
+        skeleton=in_metres(layout.skeleton, unit),
+        rotations=rotations,
+        translations=turn_inside(rotations, translations, source),
+        rate=rate,
+        translated=layout.translated,
+        trim=_trim(reading, block, rotations),
+        source=source,
+    )
+
+
+def in_metres(skeleton: Skeleton, unit: float) -> Skeleton:
+    """Scale a skeleton from units of its file to metres."""
+    return Skeleton(
+        skeleton.names,
+        skeleton.parents,
+        skeleton.offsets * unit,
+        skeleton.end_parents,
+        skeleton.end_offsets * unit,
+    )
+
+
+def turn_inside(rotations: Array, translations: Array, source: Source) -> Array:
+    """Turn the root (in place) into our axes; return the translations in metres and our axes."""
+    translations *= source.unit
+    if not np.array_equal(source.to_inside, rot.IDENTITY):
+        rotations[:, 0] = rot.multiply(source.to_inside, rotations[:, 0])
+        translations[:, 0] = rot.rotate(source.to_inside, translations[:, 0])
+    return translations
+
+
+def _rate(reading: Reading, block: MotionBlock, options: ReadOptions) -> Fraction:
+    line = reading.line(block.frame_time_span[0])
+    stated, problem = stated_rate(block.frame_time, line)
+    if stated is None:
+        raise reading.error(block.frame_time_span[0], problem.what if problem else "")
+    if options.fps is not None:
+        return options.fps
+    if problem:
+        reading.problems.append(problem)
+    return stated
+
+
+def stated_rate(text: str, line: int | None = None) -> tuple[Fraction | None, Problem | None]:
+    """Frames a second that a frame time as written stands for, and what was odd about it.
+
+    The rate is None where the text is not a number at all.
+    """
+    if not text:
+        return NO_RATE, _rate_problem(line, "'Frame Time:' is missing", NO_RATE)
+    dotted = text.replace(",", ".")
+    if not re.fullmatch(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?", dotted):
+        return None, Problem(line, f"'Frame Time: {text}' is not a number", "")
+    value = float(dotted)
+    what = f"'Frame Time: {text}'"
+    if value <= 0 or value < 1e-5:
+        return NO_RATE, _rate_problem(line, f"{what} is no duration of a frame", NO_RATE)
+    if value in (24, 25, 30, 50, 60, 100, 120, 240):
+        rate = Fraction(int(value))
+        return rate, _rate_problem(line, f"{what} looks like frames a second", rate)
+    if value >= 2:
+        rate = rate_from_frame_time(f"{value / 1000:.9g}")
+        return rate, _rate_problem(line, f"{what} looks like milliseconds", rate)
+    return rate_from_frame_time(dotted), None
+
+
+def _rate_problem(line: int | None, what: str, rate: Fraction) -> Problem:
+    return Problem(line, what, f"guessed {float(rate):g} frames a second", "fps", guess=True)
+
+
+def _unit(reading: Reading, skeleton: Skeleton, options: ReadOptions) -> float:
+    if options.unit is not None:
+        return options.unit
+    unit, why = guess_unit(skeleton)
+    done = f"guessed 1 unit = {unit:.4g} m: {why}"
+    reading.problems.append(Problem(None, "no unit of length stated", done, "unit", guess=True))
+    return unit
+
+
+def _up(
+    reading: Reading, layout: Layout, rotations: Array, translations: Array, options: ReadOptions
+) -> Up:
+    if options.up is not None:
+        return options.up
+    up, why = guess_up(layout.skeleton, rotations, translations, layout.translated)
+    done = f"guessed {up.upper()} up: {why}"
+    reading.problems.append(Problem(None, "no up axis stated", done, "up", guess=True))
+    return up
+
+
+def _trim(reading: Reading, block: MotionBlock, rotations: Array) -> tuple[int, int] | None:
+    if not starts_in_t_pose(rotations):
+        return None
+    done = "kept, but trimmed from analysis and report (guessed)"
+    reading.problems.append(
+        Problem(block.line, "the first row is a T-pose", done, "trim", guess=True)
+    )
+    return 1, len(rotations)
+
+
+def _named(takes: list[Take]) -> list[Take]:
+    if len(takes) < 2:
+        return takes
+    return [replace(take, name=f"{take.name} #{i}") for i, take in enumerate(takes, 1)]

@@ -1,0 +1,135 @@
+"""Guesses about what a motion file leaves open: rate, unit, up axis, T-pose. Named as guesses."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapstudio.formats.options import UNITS, Up
+from mocapstudio.motion import rotations as rot
+from mocapstudio.motion.kinematics import global_pose
+from mocapstudio.motion.skeleton import Skeleton
+from mocapstudio.motion.topology import topology
+
+Array = NDArray[np.float64]
+
+NO_RATE = Fraction(100)
+"""Frames a second where a file states none: the rate of the inertial suits that do so."""
+
+_WHOLE_RATES = (120, 60, 30, 24, 25, 50, 100, 240, 200, 48, 90, 150, 250, 300, 500, 1000, 125, 360)
+_RATES = (
+    *map(Fraction, _WHOLE_RATES),
+    *(Fraction(nominal * 1000, 1001) for nominal in (120, 60, 30, 24, 240)),
+)
+
+# Thigh and shank of an adult; half of all people lie within a tenth of it.
+_LEG_METRES = 0.85
+_HEIGHT_METRES = 1.7
+# Below it a small child, above it nobody: then the unit is none of the usual ones.
+_PLAUSIBLE_LEG = (0.55, 1.05)
+
+
+def rate_from_frame_time(text: str) -> Fraction:
+    """Frames a second from a frame time as it is written.
+
+    A usual rate counts as meant where its frame time, rounded or cut off to the decimals that are
+    written, is the one written: ``.0083333`` is 120, ``0.008342`` is 120000/1001.
+
+    Parameters
+    ----------
+    text
+        A positive decimal number of seconds.
+    """
+    exact = Fraction(text)
+    _, _, decimals = text.lower().partition("e")[0].partition(".")
+    exponent = text.lower().partition("e")[2]
+    ulp = Fraction(10) ** (int(exponent or 0) - len(decimals))
+    if Fraction(1) / exact in _RATES:
+        return 1 / exact
+    near = [r for r in _RATES if round(1 / r / ulp) * ulp == exact]
+    near += [r for r in _RATES if 1 / r // ulp * ulp == exact]
+    if near and abs(near[0] * exact - 1) < Fraction(1, 20):
+        return near[0]
+    close = [r for r in _RATES if abs(r * exact - 1) < Fraction(1, 20_000)]
+    return close[0] if close else (1 / exact).limit_denominator(1001)
+
+
+def guess_unit(skeleton: Skeleton) -> tuple[float, str]:
+    """Metres per unit of a skeleton given in units of its file, and the reason as a phrase."""
+    legs = [limb.joints for limb in topology(skeleton).limbs if limb.name.endswith("leg")]
+    bones = [np.sort(np.linalg.norm(skeleton.offsets[list(leg[1:])], axis=1)) for leg in legs]
+    leg = max((float(one[-2:].sum()) for one in bones), default=0.0)
+    height = float(np.ptp(skeleton.rest_positions, axis=0).max())
+    if leg > 0:
+        length, metres, what = leg, _LEG_METRES, "legs"
+    elif height > 0:
+        length, metres, what = height, _HEIGHT_METRES, "a rest pose"
+    else:
+        return UNITS["cm"], "no bone has a length"
+    free = metres / length
+    unit = min(UNITS.values(), key=lambda u: abs(np.log(u / free)))
+    low, high = (bound / _LEG_METRES for bound in _PLAUSIBLE_LEG)
+    if not low <= unit / free <= high:
+        unit = float(f"{free:.1g}")
+    return unit, f"{what} of {length:.4g} units, so {length * unit:.2f} m"
+
+
+def guess_up(
+    skeleton: Skeleton, rotations: Array, translations: Array, translated: tuple[int, ...]
+) -> tuple[Up, str]:
+    """Which world axis points from feet to head in the first seconds; Y where none can be told.
+
+    Parameters
+    ----------
+    skeleton, rotations, translations, translated
+        As in `Take`, still in the file's own axes.
+    """
+    parts = topology(skeleton)
+    legs = [limb.joints[-1] for limb in parts.limbs if "leg" in limb.name]
+    heads = [limb.joints[-1] for limb in parts.limbs if limb.name == "head"]
+    if not legs or not heads:
+        return "y", "no head and feet to tell by"
+    some = np.unique(np.linspace(0, len(rotations) - 1, 40).astype(int))
+    positions, _ = global_pose(skeleton, rotations[some], translations[some], translated)
+    rise = positions[:, heads].mean(axis=1) - positions[:, legs].mean(axis=1)
+    length = np.linalg.norm(rise, axis=-1, keepdims=True)
+    mean = (rise / np.where(length > 0, length, 1.0)).mean(axis=0)
+    up: Up = "z" if mean[2] > 0.6 and mean[2] > 1.2 * abs(mean[1]) else "y"
+    share = float(mean[1 if up == "y" else 2])
+    return up, f"the head is above the feet along {up.upper()} ({share:.2f} of the distance)"
+
+
+def turn_to_y_up(up: Up) -> Array:
+    """Quaternion that turns a world whose `up` axis points up into one where Y does."""
+    quarter = np.sqrt(0.5)
+    if up == "z":
+        return np.array([-quarter, 0.0, 0.0, quarter])
+    if up == "x":
+        return np.array([0.0, 0.0, quarter, quarter])
+    return rot.IDENTITY.copy()
+
+
+def starts_in_t_pose(rotations: Array) -> bool:
+    """Tell whether the first frame is a synthetic pose put before the motion.
+
+    It is where most joints that move later stand at exactly no rotation, and the body jumps to
+    the second frame many times faster than it moves afterwards.
+
+    Parameters
+    ----------
+    rotations
+        (F, J, 4) local rotations.
+    """
+    if len(rotations) < 8:
+        return False
+    early = rotations[:120]
+    step = rot.angle(early[1:], early[:-1])
+    moving = step[1:].max(axis=0) > 1e-4
+    if moving.sum() < 4:
+        return False
+    pace = float(np.median(step[1:, moving].mean(axis=1)))
+    jump = float(step[0, moving].mean())
+    still = np.abs(early[0, moving, 3]) > 1 - 1e-12
+    return bool(jump > np.radians(3) and jump > 8 * pace and still.mean() >= 0.5)

@@ -1,0 +1,120 @@
+"""What a user may decide about reading and writing, where a file leaves it open."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Literal
+
+from mocapstudio.motion.errors import ParameterError
+
+Up = Literal["x", "y", "z"]
+
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "asf": 0.0254 / 0.45}
+"""Metres per unit by name; ``asf`` is the 1/0.45 inch of the CMU database."""
+
+
+@dataclass(frozen=True)
+class ReadOptions:
+    """Overrides for what a file does not state or states wrongly. None leaves it to the reader.
+
+    Parameters
+    ----------
+    fps
+        Frames a second.
+    unit
+        Metres per unit of the file.
+    up
+        The file's world axis that points up.
+    angles
+        Unit of the file's rotation channels.
+    lenient
+        Read the whole rows that are there where a file states another number of frames.
+    """
+
+    fps: Fraction | None = None
+    unit: float | None = None
+    up: Up | None = None
+    angles: Literal["degrees", "radians"] = "degrees"
+    lenient: bool = False
+
+
+@dataclass(frozen=True)
+class WriteOptions:
+    """How a file is laid out. None keeps the source's own way, or the format's usual one.
+
+    Parameters
+    ----------
+    order
+        Euler order of every joint, such as ``"ZXY"`` (outermost first).
+    channels
+        3: positions for the joints that translate only; 6: positions for every joint.
+    unit
+        Metres per unit of the file.
+    up
+        The file's world axis that points up.
+    trim
+        Write only the frames of `Take.trim`.
+    """
+
+    order: str | None = None
+    channels: Literal[3, 6] | None = None
+    unit: float | None = None
+    up: Up | None = None
+    trim: bool = False
+
+    def __post_init__(self) -> None:
+        if self.order is not None and sorted(self.order) != ["X", "Y", "Z"]:
+            raise ParameterError(
+                f"Euler order {self.order!r}: X, Y and Z in some order needed, such as ZXY"
+            )
+
+    @property
+    def relayout(self) -> bool:
+        """True where the source's text cannot be kept."""
+        asked = (self.order, self.channels, self.unit, self.up)
+        return any(choice is not None for choice in asked)
+
+
+def parse_rate(text: str) -> Fraction:
+    """Frames a second from ``"30"``, ``"119.88"`` or ``"120000/1001"``.
+
+    Decimals of the NTSC family become the exact fraction.
+
+    Raises
+    ------
+    ParameterError
+        If the text is no positive number.
+    """
+    try:
+        rate = Fraction(text)
+    except (ValueError, ZeroDivisionError):
+        raise ParameterError(
+            f"{text!r} is no frame rate: such as 30, 119.88 or 120000/1001"
+        ) from None
+    if not 0 < rate <= 1_000_000:
+        raise ParameterError(f"frame rate {text} is not in 0..1000000")
+    nominal = round(rate)
+    ntsc = Fraction(nominal * 1000, 1001)
+    return ntsc if nominal and rate != nominal and abs(rate - ntsc) < Fraction(1, 100) else rate
+
+
+def parse_unit(text: str) -> float:
+    """Metres per unit from a name (``m``, ``cm``, ``mm``, ``in``, ``asf``) or a number.
+
+    Raises
+    ------
+    ParameterError
+        If the text is neither.
+    """
+    if text in UNITS:
+        return UNITS[text]
+    try:
+        unit = float(text)
+    except ValueError:
+        unit = math.nan
+    if not (math.isfinite(unit) and unit > 0):
+        names = ", ".join(UNITS)
+        raise ParameterError(f"{text!r} is no unit: {names}, or metres per unit")
+    return unit
