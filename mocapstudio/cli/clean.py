@@ -1,0 +1,88 @@
+"""`mocapstudio clean`: every proposal accepted, without the desk."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from mocapstudio.cli.detection_options import ModeOption, Threshold
+from mocapstudio.cli.output import JsonPath, check_writable, write_json
+from mocapstudio.cli.take_options import Context, Fps, JointMap, TakeOptions, Unit, UpAxis
+from mocapstudio.motion.errors import MocapError
+
+if TYPE_CHECKING:
+    from mocapstudio.cleaning.analysis import Analysis
+    from mocapstudio.review.document import Document
+
+OutPath = Annotated[
+    Path,
+    typer.Option(
+        "-o", "--out", metavar="OUT", help="File to write; a folder where there are several takes."
+    ),
+]
+
+
+def clean(
+    takes: Annotated[list[Path], typer.Argument(metavar="TAKE...", help="Files or folders.")],
+    out: OutPath,
+    context: Context = None,
+    threshold: Threshold = None,
+    mode: ModeOption = None,
+    json_path: JsonPath = None,
+    fps: Fps = None,
+    unit: Unit = None,
+    up: UpAxis = None,
+    joint_map: JointMap = None,
+) -> None:
+    """Repair all that is found in takes, and write them.
+
+    Nothing else is changed. What was changed, from which neighbour, is written beside each take
+    as its provenance.
+    """
+    from mocapstudio.cli import changes
+    from mocapstudio.cli.detection_options import analyse, parameters
+    from mocapstudio.cli.take_files import Workload
+    from mocapstudio.cli.targets import Targets
+    from mocapstudio.review.export import export
+
+    chosen = parameters(threshold, mode)
+    check_writable(json_path)
+    work = Workload(TakeOptions(fps, unit, up, joint_map))
+    files = work.files(takes)
+    targets = Targets(out, files, (*files, *work.files(context or ())))
+    others = work.context(context)
+    done: list[dict[str, Any]] = []
+    for path in files:
+        with work.going_on():
+            found = work.read(path)
+            for take in found:
+                target = targets.of(path, take, alone=len(found) == 1)
+                document, performer = repaired(analyse(take, others, chosen), context or ())
+                export(document, performer, target)
+                done.append(changes.as_json(path, target, document.state.sitting.edits))
+    write_json({"takes": done}, json_path)
+    raise typer.Exit(work.exit_code)
+
+
+def repaired(analysis: Analysis, context: list[Path] | tuple[Path, ...]) -> tuple[Document, str]:
+    """Return a document in which every flag of an analysis is accepted, and the performer's id.
+
+    A flag that nothing can be proposed for stays open, with a warning on standard error.
+    """
+    from mocapstudio.review.document import Document
+
+    document = Document()
+    performer = document.open_take(analysis.take)
+    document.set_context(context, analysis.context)
+    document.set_parameters(analysis.parameters)
+    document.finish_analysis(performer, document.begin_analysis(performer), analysis)
+    for flag in analysis.flags:
+        try:
+            document.accept(flag.id)
+        except MocapError as error:
+            place = f"{flag.joint} at frames {flag.start}:{flag.end}"
+            print(f"warning: {analysis.take.name}: {place}: {error}", file=sys.stderr)
+    return document, performer
