@@ -1,0 +1,227 @@
+"""What carries the document: its state, its history, its listeners."""
+
+from __future__ import annotations
+
+import getpass
+import uuid
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from datetime import UTC, datetime
+from typing import Any, cast
+
+from mocapstudio.motion.errors import MocapError
+from mocapstudio.motion.take import Take
+from mocapstudio.review import protection
+from mocapstudio.review.analyses import Analyses
+from mocapstudio.review.announcer import Announcer
+from mocapstudio.review.decisions import Stamp
+from mocapstudio.review.history import History, same
+from mocapstudio.review.model import QueueItem, Selection, Sitting
+from mocapstudio.review.queue import merge
+from mocapstudio.review.recorder import Nobody, Recorder
+from mocapstudio.review.replay import Results
+from mocapstudio.review.state import DocumentState, differing
+
+_LASTING = frozenset({"active", "scene", "context", "threshold", "mode", "parameters"})
+
+
+class Core:
+    """State, history and listeners; every intent ends in `_put` or `_commit`.
+
+    Parameters
+    ----------
+    author
+        Who decides; by default the name of the user who is logged in.
+    clock
+        Returns the present time, for tests.
+    """
+
+    def __init__(
+        self, author: str | None = None, clock: Callable[[], datetime] | None = None
+    ) -> None:
+        self.author = _user() if author is None else author
+        self.recorder: Recorder = Nobody()
+        self._clock = clock or (lambda: datetime.now(UTC))
+        self._announcer: Announcer[DocumentState] = Announcer()
+        self._state = DocumentState()
+        self._history = History()
+        # Label, id and the history before it, of the group that is open.
+        self._group: tuple[str, str, History] | None = None
+        self._analyses = Analyses()
+        self._sources, self._results = Results(), Results()
+        self._context: tuple[Take, ...] = ()
+        self._queue_of: tuple[str, object, object, tuple[QueueItem, ...]] = ("", (), (), ())
+        self._saved = lasting(self._state)
+        # Ids of performers whose takes were not found; what was decided about them is kept.
+        self._absent: frozenset[str] = frozenset()
+        # A selected flag that was deferred, and the line of the queue it had left.
+        self._resume: tuple[str, int] | None = None
+
+    @property
+    def state(self) -> DocumentState:
+        """The frozen state as of now."""
+        return self._state
+
+    def subscribe(
+        self, listener: Callable[[DocumentState, DocumentState], None]
+    ) -> Callable[[], None]:
+        """Call `listener(old, new)` at every change; returns what ends that."""
+        return self._announcer.subscribe(listener)
+
+    @contextmanager
+    def group(self, label: str) -> Iterator[None]:
+        """Make one undo step of all intents inside; none of them where one raises."""
+        if self._group is not None:
+            yield
+            return
+        start = self._history
+        self._group = (label, new_id(), start)
+        try:
+            yield
+        except BaseException:
+            self._history = start
+            raise
+        else:
+            self._history = start.push(label, self._history.present)
+            if self._history is not start:
+                self.recorder.stepped(label, start.present, self._history.present)
+        finally:
+            self._group = None
+            self._put()
+
+    def undo(self) -> None:
+        """Take the last step back."""
+        self._travel(self._history.undo(), self.recorder.undone)
+
+    def redo(self) -> None:
+        """Do the step again that was undone last."""
+        self._travel(self._history.redo(), self.recorder.redone)
+
+    def queue(self, performer: str) -> tuple[QueueItem, ...]:
+        """Return the queue of any performer, worst first."""
+        decided = (d for d in self._history.present.decisions if d.performer == performer)
+        return merge(self._analyses.flags(performer), decided)
+
+    def _put(self, **changes: Any) -> None:
+        """Change fields of the state, bring what follows from them up to date, tell listeners."""
+        old = self._state
+        new = replace(
+            old,
+            sitting=self._history.present,
+            can_undo=self._history.can_undo,
+            can_redo=self._history.can_redo,
+            analyses=self._analyses.latest,
+            **changes,
+        )
+        new = replace(
+            new,
+            queue=self._shown_queue(new.active),
+            choices=self._analyses.choices(new.active),
+            proposals=self._analyses.proposals(new.active),
+        )
+        if new.selection.flag is not None and new.selected is None:
+            new = replace(new, selection=replace(new.selection, flag=None))
+        new = replace(new, dirty=self._is_dirty(new))
+        changed = differing(old, new)
+        if "selection" in changed:
+            self._resume = None
+        if changed:
+            self._state = new
+            if changed & _LASTING:
+                self.recorder.settled(new)
+            self._announcer.announce(old, new)
+
+    def _commit(self, label: str, sitting: Sitting, **changes: Any) -> None:
+        """Go on to another sitting, as one step unless a group is open."""
+        before = self._history.present
+        if same(before, sitting):
+            self._put(**changes)
+            return
+        for performer in self._state.scene.performers:
+            protection.check_edits(performer.take, performer.id, before, sitting)
+        if self._group is None:
+            self._history = self._history.push(label, sitting)
+            self.recorder.stepped(label, before, sitting)
+        else:
+            self._history = replace(self._history, present=sitting)
+        self._put(**changes)
+
+    def _travel(self, history: History, record: Callable[[], None]) -> None:
+        if self._group is not None:
+            raise MocapError("undo and redo have no place inside a group")
+        if history is not self._history:
+            self._history = history
+            record()
+            self._put()
+
+    def _shown_queue(self, performer: str) -> tuple[QueueItem, ...]:
+        flags, decided = self._analyses.flags(performer), self._history.present.decisions
+        known, known_flags, known_decided, queue = self._queue_of
+        if performer != known or flags is not known_flags or decided is not known_decided:
+            queue = self.queue(performer)
+            self._queue_of = (performer, flags, decided, queue)
+        return queue
+
+    def _is_dirty(self, state: DocumentState) -> bool:
+        if not same(cast("Sitting", self._saved["sitting"]), state.sitting):
+            return True
+        # Only what was decided is worth saving where there is no file yet.
+        return state.path is not None and any(
+            self._saved[name] is not kept and self._saved[name] != kept
+            for name, kept in lasting(state).items()
+            if name not in {"sitting", "active"}
+        )
+
+    def _stamp(self) -> Stamp:
+        group = new_id() if self._group is None else self._group[1]
+        time = self._clock().astimezone(UTC).isoformat(timespec="seconds")
+        return Stamp(self.author, time.replace("+00:00", "Z"), group)
+
+    def _item(self, flag_id: str) -> QueueItem:
+        item = self._state.item(flag_id)
+        if item is None:
+            raise MocapError(f"no flag {flag_id} in the queue")
+        return item
+
+    def _items(self, flag_ids: str | Iterable[str]) -> list[QueueItem]:
+        ids = [flag_ids] if isinstance(flag_ids, str) else list(dict.fromkeys(flag_ids))
+        return [self._item(one) for one in ids]
+
+    def _take(self, performer: str) -> Take:
+        try:
+            return self._state.scene.performer(performer).take
+        except KeyError:
+            what = f"no performer {performer}" if performer else "no take is open"
+            raise MocapError(what) from None
+
+    def _trim(self, performer: str) -> tuple[int, int] | None:
+        take = self._take(performer)
+        trim = dict(self._history.present.trims).get(performer, take.trim)
+        return None if trim == (0, take.frames) else trim
+
+    def _at(self, item: QueueItem | None) -> dict[str, Any]:
+        """Fields of a state that shows an item of the queue; none where there is no item."""
+        if item is None:
+            return {}
+        flag = item.flag
+        span = (flag.start, flag.end)
+        selection = Selection(self._state.active, frozenset([flag.joint]), span, flag.id)
+        return {"selection": selection, "frame": flag.peak_frame}
+
+
+def new_id() -> str:
+    """Return an id that no other edit or group has, in any sitting."""
+    return uuid.uuid4().hex[:12]
+
+
+def lasting(state: DocumentState) -> dict[str, object]:
+    """Fields that a session file keeps, by name: the sitting and what else outlives a closing."""
+    return {name: getattr(state, name) for name in ("sitting", *_LASTING)}
+
+
+def _user() -> str:
+    try:
+        return getpass.getuser()
+    except (OSError, KeyError, ImportError):
+        return "unknown"

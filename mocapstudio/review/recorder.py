@@ -1,0 +1,52 @@
+"""Who is told of everything that a crash must not cost."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from mocapstudio.review.model import Performer, Sitting
+from mocapstudio.review.state import DocumentState
+
+
+class Recorder(Protocol):
+    """Writes down what the document does, as it does it; see `review.journal`."""
+
+    def opened(self, performer: Performer) -> None:
+        """A take was opened."""
+
+    def closed(self, performer: str) -> None:
+        """A performer was closed, and all about it forgotten."""
+
+    def stepped(self, label: str, before: Sitting, after: Sitting) -> None:
+        """A step was done."""
+
+    def undone(self) -> None:
+        """The last step was undone."""
+
+    def redone(self) -> None:
+        """The last undone step was done again."""
+
+    def settled(self, state: DocumentState) -> None:
+        """Something that lasts but cannot be undone changed, such as context or threshold."""
+
+
+class Nobody:
+    """A recorder that writes nothing down."""
+
+    def opened(self, performer: Performer) -> None:
+        """Ignore it."""
+
+    def closed(self, performer: str) -> None:
+        """Ignore it."""
+
+    def stepped(self, label: str, before: Sitting, after: Sitting) -> None:
+        """Ignore it."""
+
+    def undone(self) -> None:
+        """Ignore it."""
+
+    def redone(self) -> None:
+        """Ignore it."""
+
+    def settled(self, state: DocumentState) -> None:
+        """Ignore it."""
