@@ -1,0 +1,68 @@
+"""Published curves of level walking, over one stride from heel strike to heel strike.
+
+Sagittal angles of hip, knee and foot in whole degrees, read off the normative curves of adults
+walking at their own pace (Perry and Burnfield, Gait Analysis, 2nd edition; Winter, Biomechanics
+and Motor Control of Human Movement); thigh and foot are segment angles against the vertical and
+the floor. Pelvis, thorax and arms are the first harmonics of the curves of Murray (1967) and
+Perry. The phase of a foot is 0 at its heel strike.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline, PchipInterpolator
+
+Array = NDArray[np.float64]
+
+TOE_OFF = 0.62
+"""Phase at which a foot leaves the floor."""
+MID_STANCE = TOE_OFF / 2
+"""Phase at which the body passes over the standing foot."""
+
+# fmt: off
+_THIGH = ((0, 21), (5, 20), (10, 18), (20, 10), (30, 1), (40, -9), (50, -17), (55, -16), (62, -6),
+          (70, 8), (80, 20), (88, 25), (95, 23), (100, 21))
+_KNEE = ((0, 5), (5, 11), (12, 18), (20, 16), (30, 9), (40, 5), (47, 9), (55, 22), (62, 40),
+         (68, 55), (73, 60), (79, 53), (88, 22), (95, 4), (100, 5))
+_FOOT = ((0, 18), (7, 1), (10, 0), (20, 0), (30, 0), (36, -1), (42, -7), (50, -24), (57, -48),
+         (62, -62), (66, -66), (72, -56), (80, -20), (86, 4), (92, 17), (97, 20), (100, 18))
+# fmt: on
+
+
+def _knots(table: tuple[tuple[int, int], ...]) -> tuple[Array, Array]:
+    phase, degrees = np.array(table, dtype=np.float64).T
+    return phase / 100.0, np.deg2rad(degrees)
+
+
+def _periodic(table: tuple[tuple[int, int], ...]) -> CubicSpline[np.float64]:
+    return CubicSpline(*_knots(table), bc_type="periodic")
+
+
+_thigh, _knee = _periodic(_THIGH), _periodic(_KNEE)
+# Flat means flat: the interpolant must not overshoot between equal knots.
+_foot_phase, _foot_angle = _knots(_FOOT)
+_foot = PchipInterpolator(
+    np.concatenate([_foot_phase[:-1] - 1, _foot_phase[:-1], _foot_phase + 1]),
+    np.concatenate([_foot_angle[:-1], _foot_angle[:-1], _foot_angle]),
+)
+
+
+def thigh_angle(phase: Array) -> Array:
+    """Radians, forward positive: thigh against the vertical."""
+    return np.asarray(_thigh(phase % 1.0))
+
+
+def knee_angle(phase: Array) -> Array:
+    """Radians, flexion positive."""
+    return np.asarray(_knee(phase % 1.0))
+
+
+def foot_angle(phase: Array) -> Array:
+    """Radians, toes up positive: sole against the floor."""
+    return np.asarray(_foot(phase % 1.0))
+
+
+def wave(phase: Array, peak: float, harmonic: int = 1) -> Array:
+    """Cosine over the stride with its maximum at phase `peak`."""
+    return np.cos(2 * np.pi * harmonic * (phase - peak))
