@@ -24,9 +24,21 @@ from mocapstudio.motion.skeleton import Skeleton
 from mocapstudio.motion.take import Take
 from mocapstudio.motion.topology import topology
 
-__all__ = ["KINDS", "InjectionError", "Truth", "apply", "corrupt", "erroneous", "inject", "recur"]
+__all__ = [
+    "ERRORS_A_MINUTE",
+    "KINDS",
+    "InjectionError",
+    "Truth",
+    "apply",
+    "corrupt",
+    "erroneous",
+    "inject",
+    "recur",
+]
 
 KINDS: tuple[Kind, ...] = tuple(Kind)
+ERRORS_A_MINUTE = 6.0
+"""Makes some 12 % of a take's words hold an error, as in Table 1 of paper 1."""
 
 _ROOT_KINDS = {
     Kind.ROOT_POP: ROOT_POSITION,
@@ -122,7 +134,7 @@ def inject(
 def corrupt(
     take: Take,
     rng: np.random.Generator,
-    errors_per_minute: float = 6.0,
+    errors_per_minute: float = ERRORS_A_MINUTE,
     kinds: Sequence[Kind] = KINDS,
     *,
     family: Family = "standard",
@@ -130,8 +142,7 @@ def corrupt(
     """Inject several errors that keep half a second from each other.
 
     The number is `errors_per_minute` times the length, its fraction drawn; kinds are drawn anew
-    for each. Errors for which there is no room are left out. At the default some 12 % of a
-    take's words hold an error, as in Table 1 of paper 1.
+    for each. Errors for which there is no room are left out.
 
     Returns
     -------

@@ -1,0 +1,176 @@
+"""What a detector is given and what is known about it: dirty take, truth, context."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from mocapstudio.cleaning.model import Kind
+from mocapstudio.evaluation.corpora import Entry, Split, entries, join, read_some
+from mocapstudio.evaluation.corpora import split as half
+from mocapstudio.evaluation.injection import ERRORS_A_MINUTE, KINDS, corrupt
+from mocapstudio.evaluation.shapes import Family
+from mocapstudio.evaluation.truth import Mask, Truth, analysed_rows, erroneous
+from mocapstudio.motion.errors import MocapError
+from mocapstudio.motion.take import Take
+
+ContextSize = Literal["local", "small", "large"]
+CONTEXT_TAKES = {"local": 0, "small": 8, "large": 30}
+"""How many takes the context holds: the paper has 5 to 10, and 20 to 30."""
+LOCAL_SECONDS = 15.0
+DIRTY_A_MINUTE = 3.0
+"""Errors a minute that make about 5 % of a context's frames erroneous."""
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """One take to be analysed.
+
+    Parameters
+    ----------
+    dirty, clean
+        With and without its errors, frame by frame.
+    truths
+        The errors; none in a negative control.
+    context
+        Takes to compare with; neither the take nor its clean version is among them.
+    ignore
+        (F,) frames left out of scoring, or None.
+    """
+
+    dirty: Take
+    clean: Take
+    truths: tuple[Truth, ...]
+    context: tuple[Take, ...]
+    ignore: Mask | None = field(default=None, repr=False)
+
+    @property
+    def rows(self) -> tuple[str, ...]:
+        """Names of the scored rows."""
+        return analysed_rows(self.clean.skeleton)
+
+    def mask(self) -> Mask:
+        """(F, R) truth."""
+        return erroneous(self.clean, self.dirty, self.truths, self.rows)
+
+
+def cases(
+    data: Path | Sequence[Path],
+    corpus: str = "locomotion",
+    context: ContextSize = "small",
+    seed: int = 0,
+    count: int = 6,
+    split: Split = "development",
+    *,
+    kinds: Sequence[Kind] = KINDS,
+    errors_per_minute: float = ERRORS_A_MINUTE,
+    family: Family = "standard",
+    dirty_context: bool = False,
+    foreign: str | None = None,
+) -> list[Case]:
+    """Make `count` cases that share one context, so that it needs preparing only once.
+
+    The context comes from the development half. Takes under test come from the rest of it, or
+    from the test half, of which development never sees anything. With fewer takes than `count`
+    the same take comes again with other errors.
+
+    Parameters
+    ----------
+    data
+        Folder or files.
+    corpus
+        A set of `corpora.NAMED`, or ``"own"``.
+    context
+        ``"local"``: takes of one action joined to at least 15 s, and no context; ``"small"``: 8
+        takes; ``"large"``: 30 (at most two thirds of the half while developing).
+    seed
+        Of split, choice and errors.
+    count
+        Number of cases.
+    split
+        Which half.
+    kinds, errors_per_minute, family
+        See `injection.corrupt`; at 0 errors a minute the cases are negative controls.
+    dirty_context
+        Whether about 5 % of the context's frames are erroneous too.
+    foreign
+        Take the context from this other set.
+
+    Raises
+    ------
+    MocapError
+        If there are too few takes.
+    """
+    rng = np.random.default_rng([seed, len(corpus), CONTEXT_TAKES[context]])
+    tested, around = _chosen(data, corpus, CONTEXT_TAKES[context], split, seed, rng)
+    if foreign is not None and around:
+        others = entries(data, foreign)
+        around = [others[i] for i in rng.permutation(len(others))[: CONTEXT_TAKES[context]]]
+    context_takes = tuple(read_some(around, CONTEXT_TAKES[context]))
+    if dirty_context:
+        context_takes = tuple(corrupt(t, rng, DIRTY_A_MINUTE)[0] for t in context_takes)
+    made: list[Case] = []
+    for i in range(count):
+        clean, ignore = (
+            _joined(tested, i, rng)
+            if context == "local"
+            else (tested[i % len(tested)].read(), None)
+        )
+        case_rng = np.random.default_rng([seed, i, len(context_takes), len(corpus)])
+        dirty, truths = corrupt(clean, case_rng, errors_per_minute, kinds, family=family)
+        made.append(Case(dirty, clean, truths, context_takes, ignore))
+    return made
+
+
+def _chosen(
+    data: Path | Sequence[Path],
+    corpus: str,
+    size: int,
+    part: Split,
+    seed: int,
+    rng: np.random.Generator,
+) -> tuple[list[Entry], list[Entry]]:
+    everything = entries(data, corpus)
+    development = half(everything, "development", seed)
+    shuffled = [development[i] for i in rng.permutation(len(development))]
+    if part == "development":
+        size = min(size, (2 * len(shuffled)) // 3)
+        around, tested = shuffled[:size], shuffled[size:]
+    else:
+        test = half(everything, "test", seed)
+        around, tested = shuffled[:size], [test[i] for i in rng.permutation(len(test))]
+    if not tested or (size and not around):
+        raise MocapError(f"too few takes in the set {corpus!r}: {len(everything)}")
+    return _mixed(tested), around
+
+
+def _mixed(chosen: Sequence[Entry]) -> list[Entry]:
+    """Deal entries out action by action, so that a few of them already hold every action."""
+    groups: dict[str, list[Entry]] = {}
+    for entry in chosen:
+        groups.setdefault(entry.action, []).append(entry)
+    queues, result = list(groups.values()), []
+    while any(queues):
+        result += [q.pop(0) for q in queues if q]
+    return result
+
+
+def _joined(tested: Sequence[Entry], i: int, rng: np.random.Generator) -> tuple[Take, Mask]:
+    """Join takes of one action, then of others, until they last long enough."""
+    actions = sorted({e.action for e in tested})
+    action = actions[i % len(actions)]
+    order = [tested[k] for k in rng.permutation(len(tested))]
+    order.sort(key=lambda e: e.action != action)
+    takes: list[Take] = []
+    while sum(t.duration for t in takes) < LOCAL_SECONDS:
+        more = read_some(order, len(takes) + 1)
+        if len(more) == len(takes):
+            break
+        takes = more
+    if not takes:
+        raise MocapError("no take of the set can be read")
+    return join(takes)
