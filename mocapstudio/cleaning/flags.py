@@ -1,0 +1,77 @@
+"""From the digression map to flags: spans above the threshold, scored, named and joined."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapstudio.cleaning.kinds import likely_kind
+from mocapstudio.cleaning.model import DigressionMap, Flag
+from mocapstudio.cleaning.own_rate import OwnRate
+from mocapstudio.motion.facing import ROOT_ROWS
+from mocapstudio.motion.take import Take
+from mocapstudio.motion.topology import topology
+
+_BRIDGE_SECONDS = 0.125
+
+
+def find_flags(
+    take: Take, digression: DigressionMap, own_rate: OwnRate, threshold: float
+) -> tuple[Flag, ...]:
+    """Spans of the map above `threshold`, worst first.
+
+    Spans of one row that are nearer than 1/8 s are one flag. Flags of one limb that overlap in
+    time name each other in `joints`; each keeps its own span.
+    """
+    bridge = max(1, round(_BRIDGE_SECONDS * float(take.rate)))
+    flags = []
+    for column, row in enumerate(digression.rows):
+        values = digression.values[:, column]
+        for start, end in spans_above(values, threshold, bridge):
+            peak_frame = start + int(np.argmax(values[start:end]))
+            kind = likely_kind(take, digression, own_rate, column, start, end)
+            peak = float(values[peak_frame])
+            score = score_of(values[start:end], threshold)
+            flags.append(
+                Flag(f"{row}@{start}", row, (row,), start, end, peak, peak_frame, score, kind)
+            )
+    return tuple(sorted(_joined(take, flags), key=lambda f: (-f.score, f.start, f.joint)))
+
+
+def score_of(values: NDArray[np.float32], threshold: float) -> float:
+    """Score of a flagged span, 0..1: its peak, weighed with how long it stays up."""
+    above = values[values > threshold]
+    return float(0.7 * values.max() + 0.3 * above.mean()) if len(above) else float(values.max())
+
+
+def spans_above(
+    values: NDArray[np.float32], threshold: float, bridge: int
+) -> list[tuple[int, int]]:
+    """Half-open spans where `values` exceed `threshold`, gaps of up to `bridge` frames closed."""
+    above = np.concatenate([[False], values > threshold, [False]])
+    edges = np.flatnonzero(above[1:] != above[:-1])
+    spans: list[tuple[int, int]] = []
+    for start, end in zip(edges[::2], edges[1::2], strict=True):
+        if spans and start - spans[-1][1] <= bridge:
+            spans[-1] = (spans[-1][0], int(end))
+        else:
+            spans.append((int(start), int(end)))
+    return spans
+
+
+def _joined(take: Take, flags: list[Flag]) -> Iterable[Flag]:
+    parts, index = topology(take.skeleton), take.skeleton.index
+    limbs = {f.joint: parts.limb_of(index[f.joint]).name for f in flags if f.joint in index}
+    for flag in flags:
+        if flag.joint in ROOT_ROWS:
+            yield flag
+            continue
+        mates = {
+            other.joint
+            for other in flags
+            if limbs.get(other.joint) == limbs[flag.joint] and other.overlaps(flag.start, flag.end)
+        }
+        yield replace(flag, joints=tuple(sorted(mates, key=lambda name: index[name])))

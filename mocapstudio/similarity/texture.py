@@ -1,0 +1,148 @@
+"""The motion-texture: joints x frames of rotations, as paper 1 compares them (section 3.1)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapstudio.motion import rotations as rot
+from mocapstudio.motion.errors import MocapError, SkeletonMismatchError
+from mocapstudio.motion.facing import hips_world, split_heading
+from mocapstudio.motion.take import Take
+from mocapstudio.motion.topology import topology
+
+F32 = NDArray[np.float32]
+
+TEXTURE_RATE = 24
+
+
+@dataclass(frozen=True, eq=False)
+class MotionTexture:
+    """A take at 24 fps without its place in the world.
+
+    Parameters
+    ----------
+    joints
+        Names of the m joints.
+    quaternions
+        (T, m, 4) float32 local rotations, sign-continuous; of the hips only the tilt, the facing
+        direction removed.
+    travel
+        (T, 3) float32: forward speed and sideways speed (m/s, in the body's facing), height (m)
+        of the hips.
+    turning
+        (T,) float32: turning rate of the heading, rad/s.
+    start
+        First frame of the take that the texture covers.
+    frames_each
+        Frames of the take for one texture frame (rate / 24).
+    """
+
+    joints: tuple[str, ...]
+    quaternions: F32
+    travel: F32
+    turning: F32
+    start: int
+    frames_each: float
+
+    def __len__(self) -> int:
+        return len(self.quaternions)
+
+    @cached_property
+    def planes(self) -> F32:
+        """(m, 4, T) contiguous copy of the quaternions, time last: what the kernels search."""
+        return np.ascontiguousarray(self.quaternions.transpose(1, 2, 0))
+
+    def frame(self, position: float) -> float:
+        """Frame of the take, fractional, at a texture position."""
+        return self.start + position * self.frames_each
+
+
+def motion_texture(take: Take, joints: Sequence[str]) -> MotionTexture:
+    """Sample the trimmed span of a take at 24 fps and remove the facing direction of its hips.
+
+    Parameters
+    ----------
+    take
+        Any rate.
+    joints
+        Names of the joints to compare; all must exist in the take.
+
+    Raises
+    ------
+    MocapError
+        If the trimmed span is shorter than two frames at 24 fps.
+    """
+    first, last = take.span
+    each = float(take.rate) / TEXTURE_RATE
+    count = int((last - 1 - first) / each + 1e-6) + 1
+    if count < 2:
+        raise MocapError(f"{take.name}: {last - first} frames are too short to analyse")
+    at = np.arange(count, dtype=np.float64) * each
+    heading, tilt = split_heading(take, first, last)
+    position, _ = hips_world(take, first, last)
+    columns = [take.skeleton.index[name] for name in joints]
+    local = take.rotations[first:last, columns]
+    hips = topology(take.skeleton).hips
+    if hips in columns:
+        local = local.copy()
+        local[:, columns.index(hips)] = tilt
+    quaternions = rot.continuous(_sample_rotations(local, at))
+    heading, position = _sample(heading, at), _sample(position, at)
+    velocity = np.gradient(position, axis=0) * TEXTURE_RATE
+    sine, cosine = np.sin(heading), np.cos(heading)
+    forward = velocity[:, 0] * sine + velocity[:, 2] * cosine
+    sideways = velocity[:, 0] * cosine - velocity[:, 2] * sine
+    return MotionTexture(
+        tuple(joints),
+        np.ascontiguousarray(quaternions, dtype=np.float32),
+        np.stack([forward, sideways, position[:, 1]], axis=-1).astype(np.float32),
+        (np.gradient(heading) * TEXTURE_RATE).astype(np.float32),
+        first,
+        each,
+    )
+
+
+def comparable_joints(take: Take, context: Sequence[Take]) -> tuple[str, ...]:
+    """Names of the take's body joints that every take of the context has too, in skeleton order.
+
+    Raises
+    ------
+    SkeletonMismatchError
+        If a take of the context lacks half of them or more.
+    """
+    names = [take.skeleton.names[j] for j in topology(take.skeleton).body_joints()]
+    common = list(names)
+    for other in context:
+        missing = [name for name in names if name not in other.skeleton.index]
+        if 2 * len(missing) >= len(names):
+            raise SkeletonMismatchError(
+                f"{other.source.path if other.source else other.name}: -: another skeleton:"
+                f" {len(missing)} of {len(names)} joints of {take.name} have no namesake"
+            )
+        common = [name for name in common if name in other.skeleton.index]
+    return tuple(common)
+
+
+def _split(at: NDArray[np.float64], frames: int) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    low = np.minimum(at.astype(np.int64), max(frames - 2, 0))
+    return low, at - low
+
+
+def _sample(values: NDArray[np.float64], at: NDArray[np.float64]) -> NDArray[np.float64]:
+    low, part = _split(at, len(values))
+    part = part.reshape(-1, *[1] * (values.ndim - 1))
+    return values[low] * (1.0 - part) + values[low + 1] * part
+
+
+def _sample_rotations(q: NDArray[np.float64], at: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Interpolate on the chord: neighbouring frames are close, so this is slerp to 1e-4 rad."""
+    low, part = _split(at, len(q))
+    a, b = q[low], q[low + 1]
+    b = np.where(np.sum(a * b, axis=-1, keepdims=True) < 0, -b, b)
+    part = part[:, None, None]
+    return rot.normalize(a * (1.0 - part) + b * part)
