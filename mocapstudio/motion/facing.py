@@ -84,6 +84,23 @@ def split_heading(take: Take, start: int = 0, end: int | None = None) -> tuple[A
     return heading, rot.multiply(rot.about_axis(_Y, -heading), rotation)
 
 
+def above_hips(take: Take, start: int = 0, end: int | None = None) -> Array:
+    """World rotations (F, 4) of the hips' parent; the identity where the hips are the root."""
+    hips = topology(take.skeleton).hips
+    rotations = take.rotations[start:end]
+    above = np.broadcast_to(rot.IDENTITY, (len(rotations), 4))
+    for joint in reversed(take.skeleton.ancestors(hips)):
+        above = rot.multiply(above, rotations[:, joint])
+    return above
+
+
+def hips_rotation(take: Take, tilt: Array, start: int, end: int) -> Array:
+    """Local rotations (n, 4) of the hips with another tilt (n, 4) and the take's own heading."""
+    heading, _ = split_heading(take, start, end)
+    world = rot.multiply(rot.about_axis(_Y, heading), tilt)
+    return rot.multiply(rot.conjugate(above_hips(take, start, end)), world)
+
+
 def carrier(take: Take) -> int:
     """Position in `Take.translated` of the joint that carries the body through the world.
 
