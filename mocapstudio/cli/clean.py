@@ -52,8 +52,9 @@ def clean(
     check_writable(json_path)
     work = Workload(TakeOptions(fps, unit, up, joint_map))
     files = work.files(takes)
-    targets = Targets(out, files, (*files, *work.files(context or ())))
-    others = work.context(context)
+    context_files = work.files(context or ())
+    targets = Targets(out, files, (*files, *context_files))
+    others = work.context(context_files)
     done: list[dict[str, Any]] = []
     for path in files:
         with work.going_on():

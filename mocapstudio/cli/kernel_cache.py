@@ -12,6 +12,7 @@ from pathlib import Path
 import platformdirs
 
 VARIABLE = "NUMBA_CACHE_DIR"
+TEMPORARY = "mocapstudio-kernels-"
 
 
 def place_kernel_cache() -> Path:
@@ -25,7 +26,7 @@ def place_kernel_cache() -> Path:
     folder = platformdirs.user_cache_path("mocapstudio") / "numba"
     if not is_writable(folder):
         # A fresh name: compiled code is loaded from here, so nobody else may have put it there.
-        folder = Path(tempfile.mkdtemp(prefix="mocapstudio-kernels-"))
+        folder = Path(tempfile.mkdtemp(prefix=TEMPORARY))
     os.environ[VARIABLE] = str(folder)
     return folder
 

@@ -1,0 +1,73 @@
+"""The compiled kernels and where they are kept."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Generator
+from typing import TYPE_CHECKING
+
+from mocapstudio.cli.checks.finding import Finding, State
+from mocapstudio.cli.kernel_cache import TEMPORARY, VARIABLE, is_writable, place_kernel_cache
+from mocapstudio.motion.progress import Progress
+
+if TYPE_CHECKING:
+    from mocapstudio.cleaning.analysis import Analysis
+
+
+def check_kernel_cache() -> list[Finding]:
+    """Find out whether compiled kernels are kept from one start to the next."""
+    what = "Kernel cache"
+    folder = place_kernel_cache()
+    if not is_writable(folder):
+        remedy = f"make the folder writable or set {VARIABLE} to another"
+        return [Finding(what, State.FAILED, f"{folder} cannot be written", remedy)]
+    if folder.name.startswith(TEMPORARY):
+        remedy = f"set {VARIABLE} to a folder that stays"
+        found = f"{folder}, for this start only: kernels are compiled again each time"
+        return [Finding(what, State.NOTE, found, remedy)]
+    kept = sum(1 for _ in folder.rglob("*.nbc"))
+    remedy = "" if kept else "mocapstudio doctor --warm compiles all of them now"
+    return [Finding(what, State.OK, f"{folder}, {kept} compiled", remedy)]
+
+
+def warm() -> Generator[Progress, None, Finding]:
+    """Compile all kernels by doing, on a part of the built-in take, what needs them.
+
+    Yields
+    ------
+    Progress.
+
+    Returns
+    -------
+    How long it took.
+    """
+    from dataclasses import replace
+
+    from mocapstudio.cleaning.detection import detect
+    from mocapstudio.cleaning.parameters import MODES, DetectionParameters
+    from mocapstudio.cleaning.proposals import propose
+    from mocapstudio.evaluation.demo import demo_take
+
+    began = time.monotonic()
+    yield Progress(0.0, "making a take")
+    take = replace(demo_take(), trim=(0, 1200))
+    for number, mode in enumerate(MODES):
+        # A threshold low enough that there is something to repair.
+        work = detect(take, (), DetectionParameters(mode=mode, threshold=0.1))
+        analysis = yield from _part(work, number / len(MODES), 1 / len(MODES))
+        if analysis.flags:
+            propose(analysis, analysis.flags[0])
+    return Finding("Kernels", State.OK, f"compiled in {time.monotonic() - began:.0f} s")
+
+
+def _part(
+    work: Generator[Progress, None, Analysis], start: float, share: float
+) -> Generator[Progress, None, Analysis]:
+    """Pass the progress of a part of the work on as progress of the whole."""
+    while True:
+        try:
+            progress = next(work)
+        except StopIteration as stop:
+            analysis: Analysis = stop.value
+            return analysis
+        yield Progress(start + share * progress.done, progress.what)
