@@ -2,10 +2,12 @@
 
 from mocapstudio.formats.find import find_takes
 from mocapstudio.formats.options import ReadOptions, WriteOptions
-from mocapstudio.formats.registry import read, readable_suffixes
+from mocapstudio.formats.registry import read, readable_suffixes, write
 from mocapstudio.formats.report import ImportReport, Problem
+from mocapstudio.motion.declared import Declared
 
 __all__ = [
+    "Declared",
     "ImportReport",
     "Problem",
     "ReadOptions",
@@ -13,4 +15,5 @@ __all__ = [
     "find_takes",
     "read",
     "readable_suffixes",
+    "write",
 ]

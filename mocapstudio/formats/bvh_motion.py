@@ -39,6 +39,8 @@ class MotionBlock:
         Values in a row.
     frame_time
         As written, empty where absent.
+    section
+        Byte after the keyword MOTION.
     frames_span, frame_time_span
         Bytes of those two numbers.
     start, end
@@ -56,6 +58,7 @@ class MotionBlock:
     frames: int
     columns: int
     frame_time: str
+    section: int
     frames_span: Span
     frame_time_span: Span
     start: int
@@ -145,7 +148,8 @@ def _head(reading: Reading, start: int, end: int, columns: int) -> MotionBlock:
     rest = _REST_OF_LINE.match(reading.data, at, end)
     at = rest.end() if rest else at
     text = reading.data[slice(*time)].decode("latin-1")
-    return MotionBlock(0, columns, text, spans["frames"], time, at, end, reading.line(at))
+    line = reading.line(at)
+    return MotionBlock(0, columns, text, start, spans["frames"], time, at, end, line)
 
 
 def _stated_frames(reading: Reading, head: MotionBlock) -> int:

@@ -19,7 +19,7 @@ from mocapstudio.formats.guesses import (
     guess_unit,
     guess_up,
     rate_from_frame_time,
-    starts_in_t_pose,
+    synthetic_start,
     turn_to_y_up,
 )
 from mocapstudio.formats.options import ReadOptions, Up
@@ -221,13 +221,14 @@ def _up(
 
 
 def _trim(reading: Reading, block: MotionBlock, rotations: Array) -> tuple[int, int] | None:
-    if not starts_in_t_pose(rotations):
+    rows = synthetic_start(rotations)
+    if rows == 0:
         return None
-    done = "kept, but trimmed from analysis and report (guessed)"
-    reading.problems.append(
-        Problem(block.line, "the first row is a T-pose", done, "trim", guess=True)
-    )
-    return 1, len(rotations)
+    what = "the first row is" if rows == 1 else f"the first {rows} rows are"
+    done = "kept, but trimmed from analysis and report"
+    problem = Problem(block.line, f"{what} a synthetic T-pose", f"guessed, {done}", None, True)
+    reading.problems.append(problem)
+    return rows, len(rotations)
 
 
 def _named(takes: list[Take]) -> list[Take]:

@@ -41,8 +41,13 @@ class Layout:
     additive: bool
     radians: bool = False
 
+    @property
+    def to_radians(self) -> float:
+        """Radians per unit of the rotation channels."""
+        return 1.0 if self.radians else float(np.pi / 180)
+
     def base(self, joint: int) -> tuple[float, float, float]:
-        """What position channels of a joint are added to."""
+        """What the position channels of a joint are added to."""
         return self.hierarchy.joints[joint].offset if self.additive and joint else (0.0, 0.0, 0.0)
 
 
@@ -104,10 +109,9 @@ def motion(layout: Layout, numbers: Array) -> tuple[Array, Array]:
     """Rotations (F, J, 4) and translations (F, T, 3) of the rows, in units and axes of the file."""
     joints = layout.hierarchy.joints
     rotations = np.empty((len(numbers), len(joints), 4))
-    scale = 1.0 if layout.radians else np.pi / 180
     # One joint at a time keeps temporaries in the cache, and memory near that of the result.
     for j, joint in enumerate(joints):
-        angles = [numbers[:, column] * scale for column in joint.rotations]
+        angles = [numbers[:, column] * layout.to_radians for column in joint.rotations]
         rotations[:, j] = _continuous(_quaternions(joint.order, angles, len(numbers)))
     translations = np.empty((len(numbers), len(layout.translated), 3))
     for t, j in enumerate(layout.translated):

@@ -30,6 +30,9 @@ _HEIGHT_METRES = 1.7
 # Below it a small child, above it nobody: then the unit is none of the usual ones.
 _PLAUSIBLE_LEG = (0.55, 1.05)
 
+_LATEST_START = 4
+_EARLY = 120
+
 
 def rate_from_frame_time(text: str) -> Fraction:
     """Frames a second from a frame time as it is written.
@@ -111,25 +114,30 @@ def turn_to_y_up(up: Up) -> Array:
     return rot.IDENTITY.copy()
 
 
-def starts_in_t_pose(rotations: Array) -> bool:
-    """Tell whether the first frame is a synthetic pose put before the motion.
+def synthetic_start(rotations: Array) -> int:
+    """Count the rows of a synthetic pose (a T-pose, or all zero) put before the motion.
 
-    It is where most joints that move later stand at exactly no rotation, and the body jumps to
-    the second frame many times faster than it moves afterwards.
+    They are rows in which most joints that move later stand at exactly no rotation, and from the
+    last of which the body jumps many times faster than it moves afterwards.
 
     Parameters
     ----------
     rotations
         (F, J, 4) local rotations.
     """
-    if len(rotations) < 8:
-        return False
-    early = rotations[:120]
+    early = rotations[:_EARLY]
+    if len(early) < _LATEST_START * 2:
+        return 0
     step = rot.angle(early[1:], early[:-1])
-    moving = step[1:].max(axis=0) > 1e-4
+    moving = step[_LATEST_START:].max(axis=0) > 1e-4
     if moving.sum() < 4:
-        return False
-    pace = float(np.median(step[1:, moving].mean(axis=1)))
-    jump = float(step[0, moving].mean())
-    still = np.abs(early[0, moving, 3]) > 1 - 1e-12
-    return bool(jump > np.radians(3) and jump > 8 * pace and still.mean() >= 0.5)
+        return 0
+    pace = float(np.median(step[_LATEST_START:, moving].mean(axis=1)))
+    jumps = step[:, moving].mean(axis=1)
+    unturned = (np.abs(early[:, moving, 3]) > 1 - 1e-12).mean(axis=1) >= 0.5
+    for rows in range(1, _LATEST_START + 1):
+        if not unturned[rows - 1]:
+            return 0
+        if not unturned[rows] and jumps[rows - 1] > max(np.radians(3), 8 * pace):
+            return rows
+    return 0

@@ -37,8 +37,8 @@ def parse_regular(
     "int64(Array(uint8, 1, 'C', readonly=True), int64, int64, int64, float64[::1], float64[::1])",
     cache=True,
     nogil=True,
-)  # type: ignore[misc]
-def _parse(text, start, end, columns, values, powers):  # type: ignore[no-untyped-def]  # noqa: C901, PLR0912
+)
+def _parse(text, start, end, columns, values, powers):  # type: ignore[no-untyped-def]  # noqa: C901
     count, in_row, at = 0, 0, start
     while at < end:
         byte = text[at]

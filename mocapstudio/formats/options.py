@@ -56,6 +56,8 @@ class WriteOptions:
         The file's world axis that points up.
     trim
         Write only the frames of `Take.trim`.
+    anew
+        Do not keep the source's text: for takes that were cut, resampled or retargeted.
     """
 
     order: str | None = None
@@ -63,6 +65,7 @@ class WriteOptions:
     unit: float | None = None
     up: Up | None = None
     trim: bool = False
+    anew: bool = False
 
     def __post_init__(self) -> None:
         if self.order is not None and sorted(self.order) != ["X", "Y", "Z"]:
@@ -72,9 +75,9 @@ class WriteOptions:
 
     @property
     def relayout(self) -> bool:
-        """True where the source's text cannot be kept."""
+        """True where the source's text is not kept."""
         asked = (self.order, self.channels, self.unit, self.up)
-        return any(choice is not None for choice in asked)
+        return self.anew or any(choice is not None for choice in asked)
 
 
 def parse_rate(text: str) -> Fraction:

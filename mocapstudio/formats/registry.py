@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from mocapstudio.formats.atomic import write_whole
 from mocapstudio.formats.bvh_read import looks_like_bvh, read_bvh
-from mocapstudio.formats.options import ReadOptions
+from mocapstudio.formats.bvh_write import write_bvh
+from mocapstudio.formats.options import ReadOptions, WriteOptions
 from mocapstudio.formats.report import ImportReport
+from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.errors import FileError
 from mocapstudio.motion.take import Take
 
 Reader = Callable[[Path, bytes, ReadOptions], tuple[list[Take], ImportReport]]
+Writer = Callable[[Take, Sequence[Declared], WriteOptions], Iterator[bytes]]
 
 _SNIFFED = 4096
 
@@ -31,15 +35,18 @@ class Format:
         Tells the format by a file's first bytes.
     read
         From a file's bytes to takes.
+    write
+        From a take to a file's bytes, or None where the format is only read.
     """
 
     name: str
     suffixes: tuple[str, ...]
     looks_like: Callable[[bytes], bool]
     read: Reader
+    write: Writer | None = None
 
 
-FORMATS = (Format("bvh", (".bvh",), looks_like_bvh, read_bvh),)
+FORMATS = (Format("bvh", (".bvh",), looks_like_bvh, read_bvh, write_bvh),)
 
 
 def readable_suffixes() -> tuple[str, ...]:
@@ -63,6 +70,50 @@ def read(path: Path | str, options: ReadOptions | None = None) -> tuple[list[Tak
     except OSError as bad:
         raise FileError(path, (bad.strerror or str(bad)).lower()) from bad
     return _format_of(path, data[:_SNIFFED]).read(path, data, options or ReadOptions())
+
+
+def write(
+    take: Take,
+    path: Path | str,
+    *,
+    declared: Sequence[Declared] = (),
+    options: WriteOptions | None = None,
+    inputs: Iterable[Path] = (),
+) -> None:
+    """Write a take; the format is told by the suffix. The file appears whole or not at all.
+
+    A take that was read from a file of that format is written from its source: every byte is
+    copied but the cells of changed samples, all of which must have been declared.
+
+    Parameters
+    ----------
+    take
+        The motion to write.
+    path
+        The file.
+    declared
+        Which rows may differ from the source, over which frames.
+    options
+        Another layout than the source's, which writes the file anew.
+    inputs
+        Further files that must not be overwritten; the take's own source never is.
+
+    Raises
+    ------
+    FileError
+        If the format cannot be written, the file is an input, or it cannot be written.
+    MocapError
+        If a sample changed without being declared, or the format cannot hold it.
+    """
+    path = Path(path)
+    for one in FORMATS:
+        if one.write is not None and path.suffix.lower() in one.suffixes:
+            own = [take.source.path] if take.source is not None else []
+            pieces = one.write(take, declared, options or WriteOptions())
+            write_whole(path, pieces, inputs=[*own, *inputs])
+            return
+    known = ", ".join(s for one in FORMATS if one.write is not None for s in one.suffixes)
+    raise FileError(path, f"cannot write {path.suffix or 'without suffix'!r}: {known}")
 
 
 def _format_of(path: Path, head: bytes) -> Format:
