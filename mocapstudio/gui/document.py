@@ -32,6 +32,8 @@ class UiState:
         Share of real time at which the take plays: 0.25, 0.5 or 1.
     trails
         Whether end effectors of the selection leave trails.
+    analysing
+        Whether the take under review is being analysed.
     theme
         Name of the theme, ``"dark"`` or ``"light"``.
     """
@@ -43,6 +45,7 @@ class UiState:
     loop: bool = False
     speed: float = 1.0
     trails: bool = True
+    analysing: bool = False
     theme: str = "dark"
 
 

@@ -78,7 +78,10 @@ class Playback(QObject):
         passed = (self._clock() - began) * float(state.take.rate) * self._bridge.ui.speed
         start, end = self._span()
         frame = first + int(passed)
-        if frame >= end:
+        if frame < start:
+            self._origin = (self._clock(), start)
+            frame = start
+        elif frame >= end:
             if not self._bridge.ui.loop:
                 self._show(end - 1)
                 self._bridge.set_ui(playing=False)
