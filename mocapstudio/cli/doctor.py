@@ -38,12 +38,11 @@ def doctor(
 ) -> None:
     """Check display, OpenGL, libraries and caches, and say what to install.
 
-    Notes are about what is not to be had here but not needed either. Exits 1 if a part of the program cannot run here.
+    Notes tell of what most users do without. Exits 1 if a part of the program cannot run here.
     """
     check_writable(json_path)
-    findings = [finding for check in CHECKS for finding in check()]
-    if warm_kernels:
-        findings.append(progress.run(warm(), "kernels"))
+    warmed = [progress.run(warm(), "kernels")] if warm_kernels else []
+    findings = [finding for check in CHECKS for finding in check()] + warmed
     if json_path != STANDARD_OUTPUT:
         _show(findings)
     write_json({"findings": [_as_json(finding) for finding in findings]}, json_path)

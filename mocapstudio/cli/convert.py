@@ -1,0 +1,55 @@
+"""`mocapstudio convert`: a take in another format, or in another layout of its own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from mocapstudio.cli.take_options import Fps, Lenient, Unit, Up, UpAxis
+
+
+def convert(
+    source: Annotated[Path, typer.Argument(metavar="IN", help="The file to read.")],
+    target: Annotated[Path, typer.Argument(metavar="OUT", help="The file to write.")],
+    fps: Fps = None,
+    unit: Unit = None,
+    up: UpAxis = None,
+    lenient: Lenient = False,
+    order: Annotated[
+        str | None, typer.Option("--order", metavar="ORDER", help="Euler order, such as ZXY.")
+    ] = None,
+    channels: Annotated[
+        Literal["3", "6"] | None,
+        typer.Option("--channels", help="3: positions where joints move only; 6: everywhere."),
+    ] = None,
+    out_unit: Unit = None,
+    out_up: Annotated[
+        Up | None, typer.Option("--out-up", help="The axis that points up in OUT.")
+    ] = None,
+    trim: Annotated[
+        bool, typer.Option("--trim", help="Leave out what the trim leaves out, such as a T-pose.")
+    ] = False,
+) -> None:
+    """Write a take in another format or layout.
+
+    Without options, what is written equals what was read, number for number. --fps, --unit and
+    --up say what IN holds; --order, --channels, --out-unit and --out-up how OUT is laid out.
+    """
+    from mocapstudio import formats
+
+    reading = formats.ReadOptions(fps=fps, unit=unit, up=up, lenient=lenient)
+    writing = formats.WriteOptions(
+        order=order.upper() if order else None,
+        channels=None if channels is None else (3 if channels == "3" else 6),
+        unit=out_unit,
+        up=out_up,
+        trim=trim,
+    )
+    takes, _ = formats.read(source, reading)
+    # The source's text holds all its performers at once; written anew, each gets a file.
+    several = len(takes) > 1 and writing.relayout
+    for number, take in enumerate(takes if several else takes[:1], 1):
+        path = target.with_stem(f"{target.stem}-{number}") if several else target
+        formats.write(take, path, options=writing, inputs=[source])
