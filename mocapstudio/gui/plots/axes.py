@@ -13,6 +13,7 @@ from mocapstudio.gui.plots.ticks import time_ticks, value_ticks
 
 TIME_AXIS_HEIGHT = 19
 _LABEL_ROOM = 122.0
+_HALF_LINE = 6.0
 
 
 def small_font(pixels: int = 11) -> QFont:
@@ -20,6 +21,11 @@ def small_font(pixels: int = 11) -> QFont:
     font = themes.numbers_font()
     font.setPixelSize(pixels)
     return font
+
+
+def _plot_area(axis: pg.AxisItem) -> QRectF:
+    view = axis.linkedView()
+    return QRectF(axis.mapRectFromItem(view, view.rect()))
 
 
 class TimeAxis(pg.AxisItem):  # type: ignore[misc]
@@ -46,8 +52,8 @@ class TimeAxis(pg.AxisItem):  # type: ignore[misc]
     def paint(self, p: QPainter, _option: Any, _widget: Any) -> None:
         """Draw marks and labels."""
         look = themes.current()
-        box = self.boundingRect()
-        view = self.mapRectFromView(self.linkedView().viewRect())
+        box = self.rect()
+        view = _plot_area(self)
         start, end = self.range
         per_frame = view.width() / max(end - start, 1e-9)
         bottom = self.orientation == "bottom"
@@ -64,15 +70,15 @@ class TimeAxis(pg.AxisItem):  # type: ignore[misc]
             p.setPen(QPen(QColor(look.faint if tick.label else look.border), 1))
             p.drawLine(QPointF(x, edge), QPointF(x, edge + inward * length))
             width = metrics.horizontalAdvance(tick.label)
-            if not tick.label or x + width + 50 > box.right():
+            if not tick.label or x + width + 44 > box.right():
                 continue
             p.setFont(font)
             p.setPen(QColor(look.muted))
-            p.drawText(QPointF(x + 5, baseline), tick.label)
+            p.drawText(QPointF(x + 8, baseline), tick.label)
             p.setFont(small)
             p.setPen(QColor(look.faint))
             number = str(self._first_frame + round(tick.frame))
-            p.drawText(QPointF(x + 5 + width + 7, baseline), number)
+            p.drawText(QPointF(x + 8 + width + 6, baseline), number)
 
 
 class ValueAxis(pg.AxisItem):  # type: ignore[misc]
@@ -97,19 +103,19 @@ class ValueAxis(pg.AxisItem):  # type: ignore[misc]
     def paint(self, p: QPainter, _option: Any, _widget: Any) -> None:
         """Draw marks and labels."""
         look = themes.current()
-        box = self.boundingRect()
-        view = self.mapRectFromView(self.linkedView().viewRect())
+        box = self.rect()
+        view = _plot_area(self)
         low, high = self.range
         p.setFont(small_font())
         p.setPen(QPen(QColor(look.border), 1))
         p.drawLine(QPointF(box.right(), view.top()), QPointF(box.right(), view.bottom()))
-        marks = self.marks()
+        scale = view.height() / max(high - low, 1e-12)
+        margin = _HALF_LINE / scale
+        marks = [m for m in self.marks() if low + margin <= m[0] <= high - margin]
         for i, (value, label) in enumerate(marks):
-            y = view.bottom() - (value - low) / max(high - low, 1e-12) * view.height()
+            y = view.bottom() - (value - low) * scale
             p.setPen(QPen(QColor(look.border), 1))
             p.drawLine(QPointF(box.right() - 4, y), QPointF(box.right(), y))
-            if not view.top() + 5 <= y <= view.bottom() - 5:
-                continue
             text = f"{label} {self._unit}" if i == len(marks) - 1 else label
             p.setPen(QColor(look.muted))
             room = QRectF(box.left(), y - 8, box.width() - 8, 16)

@@ -108,7 +108,8 @@ class TimePlot(pg.PlotWidget):  # type: ignore[misc]
     @property
     def area(self) -> QRectF:
         """The plot without its axes, in pixels of the widget."""
-        return QRectF(self.plotItem.vb.sceneBoundingRect())
+        view = self.plotItem.vb
+        return QRectF(view.mapRectToScene(view.rect()))
 
     def x_of(self, frame: float) -> float:
         """Pixel of a frame."""
