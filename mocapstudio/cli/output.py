@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import sys
-import tempfile
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import IO, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
@@ -56,8 +55,9 @@ def write_json(result: Mapping[str, Any], path: Path | None) -> None:
         sys.stdout.write(text + "\n")
         sys.stdout.flush()
         return
-    with atomic(path) as file:
-        file.write((text + "\n").encode())
+    from mocapstudio.formats.atomic import write_whole
+
+    write_whole(path, [(text + "\n").encode()])
 
 
 def write_npz(arrays: Mapping[str, Any], path: Path) -> None:
@@ -70,34 +70,12 @@ def write_npz(arrays: Mapping[str, Any], path: Path) -> None:
     """
     import numpy as np
 
+    from mocapstudio.formats.atomic import write_whole
+
     save: Callable[..., None] = np.savez_compressed
-    with atomic(path) as file:
-        save(file, **arrays)
-
-
-@contextmanager
-def atomic(path: Path) -> Iterator[IO[bytes]]:
-    """Open a temporary file beside `path` that takes its place once all is written."""
-    temporary = None
-    try:
-        with tempfile.NamedTemporaryFile(
-            dir=path.parent, prefix=f".{path.name}-", delete=False
-        ) as file:
-            temporary = Path(file.name)
-            yield file
-        temporary.chmod(0o666 & ~_umask())
-        temporary.replace(path)
-    except OSError as error:
-        raise FileError(path, f"cannot be written: {error.strerror or error}") from error
-    finally:
-        if temporary is not None:
-            temporary.unlink(missing_ok=True)
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+    buffer = io.BytesIO()
+    save(buffer, **arrays)
+    write_whole(path, [buffer.getvalue()])
 
 
 def _plain(value: Any) -> Any:
