@@ -46,7 +46,7 @@ def check_none_count() -> list[Finding]:
     except OSError as error:
         return [Finding(what, State.FAILED, str(error), "see the lines on Qt's libraries")]
     if lost > TOLERANCE:
-        remedy = "pip install 'PySide6<6.12', or Python 3.12"
+        remedy = "pip install 'PySide6-Essentials<6.12', or Python 3.12"
         found = f"{lost} references lost in {CALLS} calls: the program will die"
         return [Finding(what, State.FAILED, found, remedy)]
     return [Finding(what, State.OK, f"no references lost in {CALLS} calls")]
