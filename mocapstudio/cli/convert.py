@@ -7,7 +7,14 @@ from typing import Annotated, Literal
 
 import typer
 
-from mocapstudio.cli.take_options import Fps, Lenient, Unit, Up, UpAxis
+from mocapstudio.cli.inspect import Lenient
+from mocapstudio.cli.take_options import Fps, JointMap, Unit, Up, UpAxis
+
+
+def _unit(text: str) -> float:
+    from mocapstudio.formats.options import parse_unit
+
+    return parse_unit(text)
 
 
 def convert(
@@ -16,6 +23,7 @@ def convert(
     fps: Fps = None,
     unit: Unit = None,
     up: UpAxis = None,
+    joint_map: JointMap = None,
     lenient: Lenient = False,
     order: Annotated[
         str | None, typer.Option("--order", metavar="ORDER", help="Euler order, such as ZXY.")
@@ -24,7 +32,10 @@ def convert(
         Literal["3", "6"] | None,
         typer.Option("--channels", help="3: positions where joints move only; 6: everywhere."),
     ] = None,
-    out_unit: Unit = None,
+    out_unit: Annotated[
+        float | None,
+        typer.Option("--out-unit", parser=_unit, metavar="UNIT", help="Unit of length in OUT."),
+    ] = None,
     out_up: Annotated[
         Up | None, typer.Option("--out-up", help="The axis that points up in OUT.")
     ] = None,
@@ -35,9 +46,11 @@ def convert(
     """Write a take in another format or layout.
 
     Without options, what is written equals what was read, number for number. --fps, --unit and
-    --up say what IN holds; --order, --channels, --out-unit and --out-up how OUT is laid out.
+    --up say what IN holds, --joint-map renames joints; --order, --channels, --out-unit and
+    --out-up say how OUT is laid out.
     """
     from mocapstudio import formats
+    from mocapstudio.cli.joint_map import read_joint_map, rename_joints
 
     reading = formats.ReadOptions(fps=fps, unit=unit, up=up, lenient=lenient)
     writing = formats.WriteOptions(
@@ -46,10 +59,12 @@ def convert(
         unit=out_unit,
         up=out_up,
         trim=trim,
+        anew=joint_map is not None,
     )
+    names = read_joint_map(joint_map) if joint_map else {}
     takes, _ = formats.read(source, reading)
     # The source's text holds all its performers at once; written anew, each gets a file.
     several = len(takes) > 1 and writing.relayout
     for number, take in enumerate(takes if several else takes[:1], 1):
         path = target.with_stem(f"{target.stem}-{number}") if several else target
-        formats.write(take, path, options=writing, inputs=[source])
+        formats.write(rename_joints(take, names), path, options=writing, inputs=[source])

@@ -8,12 +8,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from mocapstudio.cli.output import JsonPath, check_writable, write_json
-from mocapstudio.cli.take_options import Fps, Lenient, Unit, UpAxis
-from mocapstudio.motion.errors import MocapError
+from mocapstudio.cli.take_options import Fps, JointMap, Unit, UpAxis
 
 if TYPE_CHECKING:
-    from mocapstudio.formats import ImportReport, Problem, ReadOptions
+    from mocapstudio.formats import ImportReport, Problem
     from mocapstudio.motion.take import Take
+
+Lenient = Annotated[
+    bool,
+    typer.Option("--lenient", help="Read the whole rows there are, whatever number is stated."),
+]
 
 
 def inspect(
@@ -22,6 +26,7 @@ def inspect(
     fps: Fps = None,
     unit: Unit = None,
     up: UpAxis = None,
+    joint_map: JointMap = None,
     lenient: Lenient = False,
 ) -> None:
     """Read files and report what is in them, what was odd, and what was done about it.
@@ -29,20 +34,23 @@ def inspect(
     What a file leaves open is guessed, and said to be a guess: --fps, --unit and --up decide
     otherwise.
     """
+    from mocapstudio.cli.joint_map import read_joint_map, rename_joints
     from mocapstudio.cli.take_files import Workload
     from mocapstudio.cli.take_options import TakeOptions
     from mocapstudio.formats import ReadOptions, read
 
     check_writable(json_path)
-    work = Workload(TakeOptions(fps, unit, up, None))
+    work = Workload(TakeOptions(fps, unit, up, joint_map))
     options = ReadOptions(fps=fps, unit=unit, up=up, lenient=lenient)
+    names = read_joint_map(joint_map) if joint_map else {}
     found: list[dict[str, Any]] = []
     for path in work.files(files):
         with work.going_on():
             takes, report = read(path, options)
+            takes = [rename_joints(take, names) for take in takes]
             found.append(as_json(takes, report))
             if json_path is None:
-                _show(takes, report, options)
+                _show(takes, report)
     write_json({"files": found}, json_path)
     raise typer.Exit(work.exit_code)
 
@@ -78,8 +86,9 @@ def _problem(problem: Problem) -> dict[str, Any]:
     }
 
 
-def _show(takes: list[Take], report: ImportReport, options: ReadOptions) -> None:
+def _show(takes: list[Take], report: ImportReport) -> None:
     from rich.console import Console
+    from rich.padding import Padding
     from rich.table import Table
 
     console = Console(highlight=False)
@@ -94,8 +103,6 @@ def _show(takes: list[Take], report: ImportReport, options: ReadOptions) -> None
         flag = f"--{problem.override}" if problem.override else ""
         style = "dim" if problem.guess else None
         table.add_row(line, problem.what, problem.done, flag, style=style)
-    from rich.padding import Padding
-
     console.print(Padding(table, (0, 0, 1, 2)))
 
 

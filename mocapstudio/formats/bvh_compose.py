@@ -125,8 +125,7 @@ def _table(plan: _Plan, joints: list[int], start: int, end: int) -> Array:
             columns.append((rot.rotate(back, place) if joint == 0 else place) / plan.unit)
         columns.append(np.degrees(angles[:, joint]))
     # Adding zero turns -0.0 into 0.0.
-    table: Array = np.round(np.concatenate(columns, axis=1), _DECIMALS) + 0.0
-    return table
+    return np.asarray(np.round(np.concatenate(columns, axis=1), _DECIMALS) + 0.0, dtype=np.float64)
 
 
 def _angles(plan: _Plan, start: int, end: int) -> Array:

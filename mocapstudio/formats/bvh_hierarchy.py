@@ -146,11 +146,17 @@ class _Parser:
         elif match["close"]:
             if not self.stack or self.opening is not None:
                 raise self.error(at, "'}' closes nothing")
-            self.stack.pop()
+            self.close(self.stack.pop())
         elif match["offset"]:
             self.offset(match["values"], at)
         elif match["channels"]:
             self.channels(int(match["count"]), match["words"].split(), at)
+
+    def close(self, one: int | str) -> None:
+        if isinstance(one, int) and one not in self.offsets_seen:
+            joint = self.roots[-1].joints[one]
+            what = f"joint {joint.name} has no OFFSET"
+            self.problems.append(Problem(joint.line, what, "read as zero"))
 
     def joint(self, keyword: str, name: str, at: int) -> None:
         if self.opening is not None:

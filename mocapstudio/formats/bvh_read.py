@@ -119,11 +119,14 @@ def _take(
     digest: str,
     performer: int,
 ) -> Take:
-    layout = lay_out(hierarchy, numbers, options.angles == "radians")
+    layout = lay_out(
+        hierarchy,
+        numbers,
+        radians=options.angles == "radians",
+        add_root=options.root_offset == "add",
+    )
     rotations, translations = motion(layout, numbers)
-    if layout.additive:
-        what = "position channels below the root are all but zero"
-        reading.problems.append(Problem(None, what, "added to the OFFSETs"))
+    _tell_of_offsets(reading, layout, options)
     rate = _rate(reading, block, options)
     unit = _unit(reading, layout.skeleton, options)
     up = _up(reading, layout, rotations, translations, options)
@@ -136,9 +139,20 @@ def _take(
         translations=turn_inside(rotations, translations, source),
         rate=rate,
         translated=layout.translated,
-        trim=_trim(reading, block, rotations),
+        trim=_trim(reading, block, rotations, options),
         source=source,
     )
+
+
+def _tell_of_offsets(reading: Reading, layout: Layout, options: ReadOptions) -> None:
+    if layout.additive:
+        what = "position channels below the root are all but zero"
+        reading.problems.append(Problem(None, what, "guessed: added to the OFFSETs", guess=True))
+    root = layout.hierarchy.joints[0]
+    if root.moves and any(root.offset) and options.root_offset == "replace":
+        what = f"root {root.name} has an OFFSET beside its position channels"
+        done = "guessed: the channels hold the whole position"
+        reading.problems.append(Problem(root.line, what, done, "root_offset", guess=True))
 
 
 def in_metres(skeleton: Skeleton, unit: float) -> Skeleton:
@@ -204,8 +218,8 @@ def _unit(reading: Reading, skeleton: Skeleton, options: ReadOptions) -> float:
     if options.unit is not None:
         return options.unit
     unit, why = guess_unit(skeleton)
-    done = f"guessed 1 unit = {unit:.4g} m: {why}"
-    reading.problems.append(Problem(None, "no unit of length stated", done, "unit", guess=True))
+    done = f"guessed 1 unit = {unit:.4g} m ({why})"
+    reading.problems.append(Problem(None, "no unit stated", done, "unit", guess=True))
     return unit
 
 
@@ -215,18 +229,21 @@ def _up(
     if options.up is not None:
         return options.up
     up, why = guess_up(layout.skeleton, rotations, translations, layout.translated)
-    done = f"guessed {up.upper()} up: {why}"
+    done = f"guessed {up.upper()} up ({why})"
     reading.problems.append(Problem(None, "no up axis stated", done, "up", guess=True))
     return up
 
 
-def _trim(reading: Reading, block: MotionBlock, rotations: Array) -> tuple[int, int] | None:
+def _trim(
+    reading: Reading, block: MotionBlock, rotations: Array, options: ReadOptions
+) -> tuple[int, int] | None:
     rows = synthetic_start(rotations)
-    if rows == 0:
+    if rows == 0 or not options.trim_start:
         return None
     what = "the first row is" if rows == 1 else f"the first {rows} rows are"
-    done = "kept, but trimmed from analysis and report"
-    problem = Problem(block.line, f"{what} a synthetic T-pose", f"guessed, {done}", None, True)
+    problem = Problem(
+        block.line, f"{what} a synthetic T-pose", "guessed; trimmed", "trim_start", guess=True
+    )
     reading.problems.append(problem)
     return rows, len(rotations)
 

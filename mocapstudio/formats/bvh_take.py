@@ -31,6 +31,8 @@ class Layout:
         Joints whose local translation changes in time; the root first.
     additive
         True where position channels below the root are displacements from the OFFSET.
+    add_root
+        The same for the root.
     radians
         True where rotation channels hold radians.
     """
@@ -39,6 +41,7 @@ class Layout:
     skeleton: Skeleton
     translated: tuple[int, ...]
     additive: bool
+    add_root: bool = False
     radians: bool = False
 
     @property
@@ -48,10 +51,13 @@ class Layout:
 
     def base(self, joint: int) -> tuple[float, float, float]:
         """What the position channels of a joint are added to."""
-        return self.hierarchy.joints[joint].offset if self.additive and joint else (0.0, 0.0, 0.0)
+        added = self.additive if joint else self.add_root
+        return self.hierarchy.joints[joint].offset if added else (0.0, 0.0, 0.0)
 
 
-def lay_out(hierarchy: Hierarchy, numbers: Array, radians: bool = False) -> Layout:
+def lay_out(
+    hierarchy: Hierarchy, numbers: Array, *, radians: bool = False, add_root: bool = False
+) -> Layout:
     """Tell moving joints from bones, and place the skeleton's joints.
 
     Position channels are the whole local translation and take the OFFSET's place: some exporters
@@ -80,7 +86,7 @@ def lay_out(hierarchy: Hierarchy, numbers: Array, radians: bool = False) -> Layo
         end_parents=np.array([parent for parent, _ in hierarchy.ends], dtype=np.int64),
         end_offsets=np.array([offset for _, offset in hierarchy.ends]).reshape(-1, 3),
     )
-    return Layout(hierarchy, skeleton, tuple(translated), additive, radians)
+    return Layout(hierarchy, skeleton, tuple(translated), additive, add_root, radians)
 
 
 def _displacements(hierarchy: Hierarchy, numbers: Array, moving: list[int]) -> bool:
@@ -93,14 +99,14 @@ def _displacements(hierarchy: Hierarchy, numbers: Array, moving: list[int]) -> b
     return bool(ratios) and float(np.median(ratios)) < 0.1
 
 
-def _track(hierarchy: Hierarchy, numbers: Array, j: int, additive: bool) -> Array:
+def _track(hierarchy: Hierarchy, numbers: Array, j: int, added: bool) -> Array:
     joint = hierarchy.joints[j]
     track = np.empty((len(numbers), 3))
     for axis, column in enumerate(joint.positions):
         if column < 0:
             track[:, axis] = joint.offset[axis]
         else:
-            base = joint.offset[axis] if additive and j else 0.0
+            base = joint.offset[axis] if added else 0.0
             track[:, axis] = numbers[:, column] + base
     return track
 
@@ -115,7 +121,9 @@ def motion(layout: Layout, numbers: Array) -> tuple[Array, Array]:
         rotations[:, j] = _continuous(_quaternions(joint.order, angles, len(numbers)))
     translations = np.empty((len(numbers), len(layout.translated), 3))
     for t, j in enumerate(layout.translated):
-        translations[:, t] = _track(layout.hierarchy, numbers, j, layout.additive)
+        translations[:, t] = _track(
+            layout.hierarchy, numbers, j, layout.additive if j else layout.add_root
+        )
     return rotations, translations
 
 

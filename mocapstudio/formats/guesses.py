@@ -76,7 +76,7 @@ def guess_unit(skeleton: Skeleton) -> tuple[float, str]:
     low, high = (bound / _LEG_METRES for bound in _PLAUSIBLE_LEG)
     if not low <= unit / free <= high:
         unit = float(f"{free:.1g}")
-    return unit, f"{what} of {length:.4g} units, so {length * unit:.2f} m"
+    return unit, f"{what} of {length * unit:.2f} m"
 
 
 def guess_up(
@@ -100,8 +100,9 @@ def guess_up(
     length = np.linalg.norm(rise, axis=-1, keepdims=True)
     mean = (rise / np.where(length > 0, length, 1.0)).mean(axis=0)
     up: Up = "z" if mean[2] > 0.6 and mean[2] > 1.2 * abs(mean[1]) else "y"
-    share = float(mean[1 if up == "y" else 2])
-    return up, f"the head is above the feet along {up.upper()} ({share:.2f} of the distance)"
+    if up == "y" and mean[1] < 0.2:
+        return "y", "usual; the head is not above the feet"
+    return up, "the head is above the feet"
 
 
 def turn_to_y_up(up: Up) -> Array:

@@ -29,6 +29,10 @@ class ReadOptions:
         The file's world axis that points up.
     angles
         Unit of the file's rotation channels.
+    root_offset
+        Whether the root's position channels replace its OFFSET or are added to it.
+    trim_start
+        Trim rows of a synthetic T-pose before the motion.
     lenient
         Read the whole rows that are there where a file states another number of frames.
     """
@@ -37,6 +41,8 @@ class ReadOptions:
     unit: float | None = None
     up: Up | None = None
     angles: Literal["degrees", "radians"] = "degrees"
+    root_offset: Literal["replace", "add"] = "replace"
+    trim_start: bool = True
     lenient: bool = False
 
 

@@ -113,7 +113,7 @@ def write(
             write_whole(path, pieces, inputs=[*own, *inputs])
             return
     known = ", ".join(s for one in FORMATS if one.write is not None for s in one.suffixes)
-    raise FileError(path, f"cannot write {path.suffix or 'without suffix'!r}: {known}")
+    raise FileError(path, f"cannot write {path.suffix or 'without suffix'!r}; known are {known}")
 
 
 def _format_of(path: Path, head: bytes) -> Format:
@@ -124,4 +124,4 @@ def _format_of(path: Path, head: bytes) -> Format:
         if one.looks_like(head):
             return one
     known = ", ".join(readable_suffixes())
-    raise FileError(path, f"format {path.suffix or 'without suffix'!r} is not known: {known}")
+    raise FileError(path, f"cannot read {path.suffix or 'without suffix'!r}; known are {known}")
