@@ -28,7 +28,7 @@ from mocapstudio.motion.skeleton import Skeleton
 Array = NDArray[np.float64]
 
 _FORWARD = np.array([0.0, 0.0, 1.0])
-_ARC = np.array([0.0, 0.0, 0.10])
+_ARC = np.array([0.0, 0.0, 0.15])
 _LONGEST_LEG = THIGH + SHANK - 0.0025
 """Metres: a leg keeps its knee bent a few degrees."""
 
@@ -60,8 +60,18 @@ def move(
     for side, sign in SIDES:
         _leg(local, skeleton, side, sign, root, pelvis, ground, feet[side])
         _arm(local, skeleton, side, sign, route, reaching, times, root, ground, (x, z), rng)
+    _measure(local, skeleton, times, rng)
     stance = {side: foot.stance for side, foot in feet.items()}
     return Motion(rot.continuous(local), root, stance)
+
+
+def _measure(local: Array, skeleton: Skeleton, times: Array, rng: np.random.Generator) -> None:
+    """Add what even good markers leave: noise, but none that would make the feet slide."""
+    carrying = {"Hips", *(side + part for side, _ in SIDES for part in ("UpLeg", "Leg", "Foot"))}
+    free = [j for j, name in enumerate(skeleton.names) if name not in carrying]
+    noise = np.deg2rad(smooth_noise(rng, times, 8.0, 0.04, 3 * len(free)))
+    vectors = noise.reshape(len(times), len(free), 3)
+    local[:, free] = rot.multiply(local[:, free], rot.from_rotation_vector(vectors))
 
 
 def _pelvis(
@@ -77,7 +87,7 @@ def _pelvis(
     phase, show = route.phase, route.stepping
     idle = smooth_noise(rng, times, 0.25, 1.0, 3) * (1 - 0.7 * show)[:, None]
     aside = -0.022 * show * wave(phase, 0.31) + 0.010 * idle[:, 0]
-    up = -0.004 - show * (0.024 - 0.019 * wave(phase, 0.31, 2)) - 0.002 * np.abs(idle[:, 1])
+    up = -0.004 - show * (0.016 - 0.015 * wave(phase, 0.31, 2)) - 0.002 * np.abs(idle[:, 1])
     along = 0.010 * show * wave(phase, 0.45, 2) + 0.006 * idle[:, 2]
     local = np.stack([aside, STANDING_HEIGHT + up, along], axis=-1) + reaching.shift
     ground = rot.about_axis(1, heading)
@@ -122,7 +132,7 @@ def _trunk(
     list_ = np.deg2rad(4.5) * show * wave(phase, 0.15)
     lean = np.deg2rad(-1.0 + 0.6 * show * wave(phase, 0.1, 2))
     for part, share, at in (("Spine", 0.45, 0), ("Chest", 0.55, 3)):
-        angles = np.stack([share * twist, share * list_, share * lean + 0 * twist], axis=-1)
+        angles = np.stack([share * twist, share * list_, share * lean], axis=-1)
         angles += sway[:, at : at + 3]
         angles[:, 2] += breath if part == "Chest" else 0.0
         extra = reaching.spine if part == "Spine" else reaching.chest
@@ -153,8 +163,8 @@ def _leg(
     level = rot.rotate(foot.rotation, np.broadcast_to(np.array([1.0, 0.0, 0.0]), root.shape))
     toes = np.cross(level, np.array([0.0, 1.0, 0.0]))
     pole = rot.rotate(ground, forward) + toes
-    thigh, shank = bend(hip, foot.ankle, pole, THIGH, SHANK)
-    hinge = np.cross(pole, hip - foot.ankle)
+    thigh, shank = bend(hip, foot.ankle, pole, (THIGH, SHANK))
+    hinge = np.cross(hip - foot.ankle, pole)
     upper, lower = _hanging(hinge, thigh), _hanging(hinge, shank)
     at = {part: skeleton.index[side + part] for part in ("UpLeg", "Leg", "Foot", "Toe")}
     local[:, at["UpLeg"]] = rot.multiply(rot.conjugate(pelvis), upper)
@@ -184,7 +194,9 @@ def _arm(
     at = {part: skeleton.index[side + part] for part in ("Shoulder", "Arm", "ForeArm", "Hand")}
     swing = _swinging(route, sign, times, rng)
     weight, shrug, target = reaching.hands[side]
-    raised = rot.about_axis(2, sign * (shrug + np.deg2rad(smooth_noise(rng, times, 0.4, 0.6)[:, 0])))
+    raised = rot.about_axis(
+        2, sign * (shrug + np.deg2rad(smooth_noise(rng, times, 0.4, 0.6)[:, 0]))
+    )
     local[:, at["Shoulder"]] = raised
     chest = local[:, 0]
     spot = root
@@ -197,12 +209,12 @@ def _arm(
     upper, lower, elbow = _swung(chest, swing, sign)
     wrist = spot + UPPER_ARM * upper + FOREARM * lower
     # A hand goes straight to its target, but for an arc around the body.
-    arc = np.outer(4 * weight * (1 - weight), _ARC)
+    arc = np.outer(4 * weight * (1 - weight) * np.maximum(target[:, 1] - 0.8, 0.0), _ARC)
     goal = wrist + weight[:, None] * (floor + rot.rotate(ground, target) - wrist)
     goal = goal + rot.rotate(ground, arc)
-    out = rot.rotate(ground, np.broadcast_to(np.array([0.45 * sign, -0.75, -0.4]), goal.shape))
+    out = rot.rotate(chest, np.broadcast_to(np.array([0.25 * sign, -0.85, -0.4]), goal.shape))
     pole = elbow + weight[:, None] * (out - elbow)
-    upper, lower = bend(spot, goal, pole, UPPER_ARM, FOREARM)
+    upper, lower = bend(spot, goal, pole, (UPPER_ARM, FOREARM), 0.006)
     hinge = sign * np.cross(goal - spot, pole)
     first, second = frame(sign * upper, hinge), frame(sign * lower, hinge)
     local[:, at["Arm"]] = rot.multiply(rot.conjugate(chest), first)

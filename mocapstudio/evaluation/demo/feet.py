@@ -23,9 +23,10 @@ Array = NDArray[np.float64]
 _UP = np.array([0.0, ANKLE_HEIGHT, 0.0])
 _TOE_OUT = np.deg2rad(6.0)
 _WALKING_BASE, _STANDING_BASE = 0.055, 0.100
+_IDLE_THIGH = np.deg2rad(10.0)
 _CLEARANCE = 0.024
-_BLEND = 0.75
-"""Share of the swing over which the last (or next) footprint leads the foot."""
+_LED = np.array([0.56, 0.40, 0.56])
+"""Shares of the swing over which either footprint leads the foot: along, up, aside."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,10 +80,9 @@ def foot_motion(
     last = _planted(prints[here], yaw, pitch, np.where(rolls_on_ball[:, None], BALL, HEEL))
     following = _planted(prints[ahead], yaw, pitch, np.broadcast_to(HEEL, last.shape))
     free = _free_ankle(route, hip, heading, inside)
-    leave = 1 - minimum_jerk(swing / _BLEND)
-    arrive = minimum_jerk((swing - 1 + _BLEND) / _BLEND)
-    free = free + leave[:, None] * (last - free)
-    ankle = free + arrive[:, None] * (following - free)
+    share = swing[:, None] / _LED
+    free = free + (1 - minimum_jerk(share)) * (last - free)
+    ankle = free + minimum_jerk(share + 1 - 1 / _LED) * (following - free)
     ankle[:, 1] += _CLEARANCE * 16 * (swing * (1 - swing)) ** 2
     return FootMotion(
         np.where((swing > 0)[:, None], ankle, last),
@@ -119,8 +119,9 @@ def _planted(place: Array, yaw: Array, pitch: Array, pivot: Array) -> Array:
 def _free_ankle(route: Route, hip: Array, heading: Array, inside: Array) -> Array:
     """Ankle as the published thigh and knee angles put it below the hip joint."""
     show = route.stepping
-    thigh = show * curves.thigh_angle(inside)
-    shank = thigh - show * curves.knee_angle(inside)
+    thigh = _IDLE_THIGH + show * (curves.thigh_angle(inside) - _IDLE_THIGH)
+    knee = 2 * _IDLE_THIGH + show * (curves.knee_angle(inside) - 2 * _IDLE_THIGH)
+    shank = thigh - knee
     forward = THIGH * np.sin(thigh) + SHANK * np.sin(shank)
     down = THIGH * np.cos(thigh) + SHANK * np.cos(shank)
     local = np.stack([np.zeros_like(down), -down, forward], axis=-1)

@@ -15,7 +15,13 @@ def unit(v: Array) -> Array:
     return np.asarray(v / np.linalg.norm(v, axis=-1, keepdims=True))
 
 
-def bend(base: Array, target: Array, pole: Array, upper: float, lower: float) -> tuple[Array, ...]:
+def bend(
+    base: Array,
+    target: Array,
+    pole: Array,
+    lengths: tuple[float, float],
+    softness: float = 0.001,
+) -> tuple[Array, Array]:
     """Directions of both bones so that the chain from `base` ends at `target`.
 
     Parameters
@@ -24,18 +30,21 @@ def bend(base: Array, target: Array, pole: Array, upper: float, lower: float) ->
         (F, 3) metres, world.
     pole
         (F, 3): the side to which the middle joint points.
-    upper, lower
-        Lengths of the bones, metres. A target out of reach is approached along its direction,
-        smoothly: the chain never straightens fully.
+    lengths
+        Of the upper and the lower bone, metres. A target out of reach is approached along its
+        direction, smoothly: the chain never straightens fully.
+    softness
+        Metres before full reach within which the chain falls short of its target.
 
     Returns
     -------
     (F, 3) unit directions of the upper and the lower bone, world.
     """
+    upper, lower = lengths
     reach = target - base
     straight = unit(reach)
     longest = 0.9995 * (upper + lower)
-    distance = _soft_limit(np.linalg.norm(reach, axis=-1), longest)
+    distance = _soft_limit(np.linalg.norm(reach, axis=-1), longest, softness)
     cosine = (upper**2 + distance**2 - lower**2) / (2 * upper * distance)
     alpha = np.arccos(np.clip(cosine, -1, 1))[:, None]
     side = unit(pole - straight * np.sum(pole * straight, axis=-1, keepdims=True))
@@ -44,7 +53,7 @@ def bend(base: Array, target: Array, pole: Array, upper: float, lower: float) ->
     return first, second
 
 
-def _soft_limit(distance: Array, longest: float, softness: float = 0.001) -> Array:
+def _soft_limit(distance: Array, longest: float, softness: float) -> Array:
     return np.asarray(longest - softness * np.logaddexp(0.0, (longest - distance) / softness))
 
 

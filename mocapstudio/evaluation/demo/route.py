@@ -19,7 +19,7 @@ from mocapstudio.evaluation.demo.variation import minimum_jerk, smooth_noise
 Array = NDArray[np.float64]
 
 STRIDE_SECONDS = 1.12
-STRIDE_METRES = 1.26
+STRIDE_METRES = 1.25
 RAMP_SECONDS = 0.9
 RAMP_STRIDES = 0.8
 START_PHASE = 0.06
@@ -126,17 +126,21 @@ def _along(score: Sequence[Walk | Stand], grid: Array) -> tuple[Array, Array, Ar
         if isinstance(item, Stand):
             continue
         end = start + item.strides
-        ramp = minimum_jerk((grid - start) / RAMP_STRIDES)
-        ramp *= minimum_jerk((end - grid) / RAMP_STRIDES)
+        ramp = _ramps(grid, start, end, RAMP_STRIDES)
         turn = np.zeros(len(grid))
         for first, strides, degrees in item.turns:
             turn += _bump(grid - start - first, strides) * np.deg2rad(degrees)
         # Who turns sharply takes shorter steps.
         length += ramp * item.pace / (1.0 + 0.35 * np.abs(turn))
-        angles += ramp * max(item.pace, 0.4) / (1.0 + 0.12 * np.abs(turn))
+        shown = _ramps(grid, start, end, 0.5 * RAMP_STRIDES)
+        angles += shown * max(item.pace, 0.4) / (1.0 + 0.12 * np.abs(turn))
         turning += turn
         start = end
     return length, angles, turning
+
+
+def _ramps(phase: Array, start: float, end: float, width: float) -> Array:
+    return minimum_jerk((phase - start) / width) * minimum_jerk((end - phase) / width)
 
 
 def _bump(phase: Array, width: float) -> Array:
