@@ -43,8 +43,9 @@ class Analyses:
 
     def reflag(self, threshold: float) -> None:
         """Flag every performer's map again at another threshold."""
-        for performer, analysis in self.latest.items():
-            self._set(performer, analysis.with_threshold(threshold))
+        again = {p: analysis.with_threshold(threshold) for p, analysis in self.latest.items()}
+        for performer, analysis in again.items():
+            self._set(performer, analysis)
 
     def forget(self, performer: str) -> None:
         """Let go of a performer; an analysis under way becomes stale."""

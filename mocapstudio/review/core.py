@@ -20,10 +20,11 @@ from mocapstudio.review.history import History, same
 from mocapstudio.review.model import QueueItem, Selection, Sitting
 from mocapstudio.review.queue import merge
 from mocapstudio.review.recorder import Nobody, Recorder
+from mocapstudio.review.references import TakeRecord
 from mocapstudio.review.replay import Results
 from mocapstudio.review.state import DocumentState, differing
 
-_LASTING = frozenset({"active", "scene", "context", "threshold", "mode", "parameters"})
+_LASTING = frozenset({"active", "scene", "context", "parameters"})
 
 
 class Core:
@@ -53,8 +54,8 @@ class Core:
         self._context: tuple[Take, ...] = ()
         self._queue_of: tuple[str, object, object, tuple[QueueItem, ...]] = ("", (), (), ())
         self._saved = lasting(self._state)
-        # Ids of performers whose takes were not found; what was decided about them is kept.
-        self._absent: frozenset[str] = frozenset()
+        # Performers whose takes were not found; what was decided about them is kept.
+        self.absent: tuple[TakeRecord, ...] = ()
         # A selected flag that was deferred, and the line of the queue it had left.
         self._resume: tuple[str, int] | None = None
 
@@ -92,11 +93,11 @@ class Core:
 
     def undo(self) -> None:
         """Take the last step back."""
-        self._travel(self._history.undo(), self.recorder.undone)
+        self._travel(self._history.undo(), self._state.can_undo, self.recorder.undone)
 
     def redo(self) -> None:
         """Do the step again that was undone last."""
-        self._travel(self._history.redo(), self.recorder.redone)
+        self._travel(self._history.redo(), self._state.can_redo, self.recorder.redone)
 
     def queue(self, performer: str) -> tuple[QueueItem, ...]:
         """Return the queue of any performer, worst first."""
@@ -147,12 +148,17 @@ class Core:
             self._history = replace(self._history, present=sitting)
         self._put(**changes)
 
-    def _travel(self, history: History, record: Callable[[], None]) -> None:
+    def _travel(
+        self,
+        history: History,
+        label: str | None,
+        record: Callable[[str, Sitting, Sitting], None],
+    ) -> None:
         if self._group is not None:
             raise MocapError("undo and redo have no place inside a group")
-        if history is not self._history:
-            self._history = history
-            record()
+        if history is not self._history and label is not None:
+            before, self._history = self._history.present, history
+            record(label, before, history.present)
             self._put()
 
     def _shown_queue(self, performer: str) -> tuple[QueueItem, ...]:
@@ -216,7 +222,7 @@ def new_id() -> str:
 
 
 def lasting(state: DocumentState) -> dict[str, object]:
-    """Fields that a session file keeps, by name: the sitting and what else outlives a closing."""
+    """Fields of a state that outlive it in the session file, by name."""
     return {name: getattr(state, name) for name in ("sitting", *_LASTING)}
 
 

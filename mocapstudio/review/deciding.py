@@ -38,7 +38,7 @@ class Deciding(Core):
             if edit is not None:
                 items.append(item)
                 edits.append(edit)
-        self._decide("Accept", items, Verdict.ACCEPTED, stamp, edits, advance)
+        self._decide(_labelled("Accept", items), items, Verdict.ACCEPTED, stamp, edits, advance)
 
     def reject(self, flag_ids: str | Iterable[str], advance: bool = False) -> None:
         """Reject flags: the motion is right as it is; an accepted one loses its edit."""
@@ -62,7 +62,9 @@ class Deciding(Core):
         """
         item = self._item(flag_id)
         items = decisions.alike(item, self._state.queue, band)
-        label = f"Reject {len(items)} like {item.flag.joint}" if len(items) > 1 else "Reject"
+        label = f"Reject {len(items)} like {item.flag.joint}"
+        if len(items) == 1:
+            label = _labelled("Reject", items)
         self._decide(label, items, Verdict.REJECTED, self._stamp(), (), advance)
         return len(items)
 
@@ -119,7 +121,7 @@ class Deciding(Core):
         self, word: str, flag_ids: str | Iterable[str], verdict: Verdict, advance: bool
     ) -> None:
         items = [i for i in self._items(flag_ids) if i.verdict is not verdict]
-        self._decide(word, items, verdict, self._stamp(), (), advance)
+        self._decide(_labelled(word, items), items, verdict, self._stamp(), (), advance)
 
     def _decide(
         self,
@@ -134,10 +136,6 @@ class Deciding(Core):
         deferred = {i.flag.id for i in items} if verdict is Verdict.DEFERRED else set()
         place = walk.place(queue, selected) if selected in deferred else None
         following = walk.following(queue, {i.flag.id for i in items}) if advance else None
-        if len(items) == 1:
-            label = f"{label} {items[0].flag.joint}" if " " not in label else label
-        elif " " not in label:
-            label = f"{label} {len(items)} flags"
         performer, sitting = self._state.active, self._history.present
         if items:
             after = decisions.decide(sitting, performer, queue, items, verdict, stamp, edits)
@@ -163,13 +161,13 @@ class Deciding(Core):
         return edit
 
     def _propose(self, performer: str, flag: Flag) -> Proposal:
+        # The engine's kernels take a while to import; a desk that only looks needs none.
         from mocapstudio.cleaning.proposals import propose
 
         analysis = self._analyses.latest.get(performer)
         if analysis is None:
             raise MocapError(f"no proposal for {flag.joint} yet: analyse the take first")
-        proposal: Proposal = propose(analysis, flag, self._state.choices.get(flag.id))
-        return proposal
+        return propose(analysis, flag, self._state.choices.get(flag.id))
 
     def _edit(self, edit_id: str) -> Edit:
         for edit in self._history.present.edits:
@@ -186,3 +184,7 @@ class Deciding(Core):
         check_rows(take, rows)
         check_span(take, start, end)
         return performer, rows
+
+
+def _labelled(word: str, items: Sequence[QueueItem]) -> str:
+    return f"{word} {items[0].flag.joint if len(items) == 1 else f'{len(items)} flags'}"

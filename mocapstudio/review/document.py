@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from mocapstudio.cleaning.model import Flag
 from mocapstudio.motion.declared import Declared
@@ -15,6 +15,7 @@ from mocapstudio.review.core import lasting
 from mocapstudio.review.deciding import Deciding
 from mocapstudio.review.history import History
 from mocapstudio.review.model import Scene, Sitting, Verdict
+from mocapstudio.review.recorder import Recovered
 from mocapstudio.review.rows import rows_of, union
 from mocapstudio.review.state import DocumentState, SessionProblem
 from mocapstudio.review.viewing import Viewing
@@ -35,6 +36,12 @@ class Document(Viewing, Deciding):
     clock
         Returns the present time, for tests.
     """
+
+    save: str = ""
+    """Id of the last save, "" while unsaved."""
+
+    recovered: Recovered | None = None
+    """The journal this document was recovered from, if any."""
 
     @property
     def context_takes(self) -> tuple[Take, ...]:
@@ -57,6 +64,14 @@ class Document(Viewing, Deciding):
         """Rows × spans that unmuted edits of a performer may change."""
         self._take(performer)
         return replay.declared(e for e in self._state.sitting.edits if e.performer == performer)
+
+    def flags(self, performer: str) -> tuple[Flag, ...]:
+        """Flags of a performer's latest analysis, or those that its session file had kept."""
+        return self._analyses.flags(performer)
+
+    def choices(self, performer: str) -> Mapping[str, int | None]:
+        """Neighbour chosen for each of a performer's flags, by flag id."""
+        return self._analyses.choices(performer)
 
     def normal(self, performer: str) -> tuple[Declared, ...]:
         """Rejected rows × spans: normal for the next analysis."""
@@ -98,8 +113,29 @@ class Document(Viewing, Deciding):
             self._analyses.restore(performer, kept, choices.get(performer, {}))
         self._put(scene=scene, **view)
 
-    def mark_saved(self, path: Path, sitting: Sitting | None = None) -> None:
-        """Note that the document, or that sitting of it, is what stands in the session file."""
+    def mark_saved(self, path: Path, save: str, sitting: Sitting | None = None) -> None:
+        """Note what stands in the session file: the document, or that sitting of it.
+
+        Parameters
+        ----------
+        save
+            Id of that save.
+        """
+        self.save = save
         state = self._state if sitting is None else replace(self._state, sitting=sitting)
         self._saved = lasting(state)
         self._put(path=Path(path))
+
+    def set_problems(self, problems: Iterable[SessionProblem]) -> None:
+        """Say what was wrong when the session was opened; nothing once the user has seen it."""
+        self._put(problems=tuple(problems))
+
+    @property
+    def saved_sitting(self) -> Sitting:
+        """The sitting that stands in the session file; an empty one without a file."""
+        return cast("Sitting", self._saved["sitting"])
+
+    @property
+    def saved_scene(self) -> Scene:
+        """The scene that stands in the session file; an empty one without a file."""
+        return cast("Scene", self._saved["scene"])

@@ -2,10 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
 
 from mocapstudio.review.model import Performer, Sitting
 from mocapstudio.review.state import DocumentState
+
+if TYPE_CHECKING:
+    from mocapstudio.review.document import Document
+
+
+@dataclass(frozen=True)
+class Recovered:
+    """The journal that a document was recovered from, and how many of its bytes are sound."""
+
+    path: Path
+    length: int
 
 
 class Recorder(Protocol):
@@ -20,14 +33,17 @@ class Recorder(Protocol):
     def stepped(self, label: str, before: Sitting, after: Sitting) -> None:
         """A step was done."""
 
-    def undone(self) -> None:
+    def undone(self, label: str, before: Sitting, after: Sitting) -> None:
         """The last step was undone."""
 
-    def redone(self) -> None:
+    def redone(self, label: str, before: Sitting, after: Sitting) -> None:
         """The last undone step was done again."""
 
     def settled(self, state: DocumentState) -> None:
         """Something that lasts but cannot be undone changed, such as context or threshold."""
+
+    def saved(self, document: Document) -> None:
+        """All was written to the session file `document.state.path`."""
 
 
 class Nobody:
@@ -42,11 +58,14 @@ class Nobody:
     def stepped(self, label: str, before: Sitting, after: Sitting) -> None:
         """Ignore it."""
 
-    def undone(self) -> None:
+    def undone(self, label: str, before: Sitting, after: Sitting) -> None:
         """Ignore it."""
 
-    def redone(self) -> None:
+    def redone(self, label: str, before: Sitting, after: Sitting) -> None:
         """Ignore it."""
 
     def settled(self, state: DocumentState) -> None:
+        """Ignore it."""
+
+    def saved(self, document: Document) -> None:
         """Ignore it."""

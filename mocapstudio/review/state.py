@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from mocapstudio.cleaning.model import Proposal
+from mocapstudio.cleaning.parameters import DetectionParameters
 from mocapstudio.motion.take import Take
 from mocapstudio.review.model import Performer, QueueItem, Scene, Selection, Sitting
 
@@ -53,10 +54,8 @@ class DocumentState:
         Current frame of the active take.
     selection
         Joints × span of one performer, at most one flag.
-    threshold, mode
-        Of the digression map: flags are raised above the threshold.
     parameters
-        The detection's parameters as last set, or None for the defaults.
+        Of detection, as set for the next analysis.
     context
         Paths of the context as shown.
     analyses
@@ -82,9 +81,7 @@ class DocumentState:
     active: str = ""
     frame: int = 0
     selection: Selection = field(default_factory=Selection)
-    threshold: float = 0.5
-    mode: str = "calibrated"
-    parameters: Any = None
+    parameters: DetectionParameters = field(default_factory=DetectionParameters)
     context: tuple[Path | str, ...] = ()
     analyses: Mapping[str, Analysis] = field(default_factory=_empty)
     queue: tuple[QueueItem, ...] = ()
@@ -96,6 +93,16 @@ class DocumentState:
     can_undo: str | None = None
     can_redo: str | None = None
     problems: tuple[SessionProblem, ...] = ()
+
+    @property
+    def threshold(self) -> float:
+        """Value of the digression map above which flags are raised."""
+        return self.parameters.threshold
+
+    @property
+    def mode(self) -> str:
+        """Which digression map is made: ``"calibrated"`` or ``"paper"``."""
+        return self.parameters.mode
 
     @property
     def performer(self) -> Performer | None:

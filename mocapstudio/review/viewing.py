@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mocapstudio.cleaning.model import Proposal
-from mocapstudio.motion.errors import ParameterError
+from mocapstudio.cleaning.parameters import DetectionParameters
 from mocapstudio.motion.take import Take
 from mocapstudio.review import walk
 from mocapstudio.review.core import Core
@@ -35,7 +35,7 @@ class Viewing(Core):
             Seconds by which the take starts after the scene's zero.
         """
         scene = self._state.scene
-        taken = {p.id for p in scene.performers} | self._absent
+        taken = {p.id for p in scene.performers} | {a.id for a in self.absent}
         name, n = take.name, 2
         while name in taken:
             name, n = f"{take.name}#{n}", n + 1
@@ -162,23 +162,25 @@ class Viewing(Core):
         Raises
         ------
         ParameterError
-            If `x` lies outside 0..1.
+            If `x` lies outside the parameter's bounds.
         """
-        if not 0.0 <= x <= 1.0:
-            raise ParameterError(f"threshold {x:g} lies outside 0 to 1")
-        if x != self._state.threshold:
-            self._analyses.reflag(x)
-            self._put(threshold=float(x))
+        self.set_parameters(replace(self._state.parameters, threshold=float(x)))
 
     def set_mode(self, mode: str) -> None:
-        """Choose the mode of the next analysis."""
-        self._put(mode=str(mode))
+        """Choose the map of the next analysis: ``"calibrated"`` or ``"paper"``.
 
-    def set_parameters(self, parameters: Any) -> None:
-        """Set all parameters of detection; threshold and mode follow them."""
+        Raises
+        ------
+        ParameterError
+            If there is no such mode.
+        """
+        self.set_parameters(replace(self._state.parameters, mode=mode))
+
+    def set_parameters(self, parameters: DetectionParameters) -> None:
+        """Set all parameters of detection; the threshold takes effect at once."""
         if parameters.threshold != self._state.threshold:
             self._analyses.reflag(parameters.threshold)
-        self._put(parameters=parameters, threshold=parameters.threshold, mode=str(parameters.mode))
+        self._put(parameters=parameters)
 
     def set_context(self, paths: Iterable[Path | str], takes: Iterable[Take] = ()) -> None:
         """Set the context: its paths as shown and its takes."""

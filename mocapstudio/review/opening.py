@@ -1,0 +1,189 @@
+"""From records to a document: what was saved, what a journal adds, and the takes found again."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from mocapstudio.cleaning.parameters import DetectionParameters
+from mocapstudio.motion.errors import FileError, ParameterError
+from mocapstudio.review.document import Document
+from mocapstudio.review.history import History
+from mocapstudio.review.journal_records import (
+    Closed,
+    Event,
+    Found,
+    Opened,
+    Settled,
+    Stepped,
+    advanced,
+    from_text,
+)
+from mocapstudio.review.model import Performer, Scene, Selection
+from mocapstudio.review.recorder import Recovered
+from mocapstudio.review.references import Finder, Relocate, TakeRecord, absolute
+from mocapstudio.review.session_record import SessionRecord
+from mocapstudio.review.state import SessionProblem
+from mocapstudio.review.wire import Arrays, MalformedError, unpack, unpack_flag
+
+
+def journal_path(path: Path) -> Path:
+    """Where the journal of a session file lies."""
+    return path.with_name(f"{path.name}.journal")
+
+
+class Opening:
+    """Gathers what is known of a sitting, then makes its document.
+
+    Parameters
+    ----------
+    record, arrays
+        Of the session file; an empty record for a sitting that was never saved.
+    path
+        The session file, or None.
+    relocate
+        As for `session_file.load`.
+
+    Raises
+    ------
+    FileError
+        If samples are missing or damaged.
+    """
+
+    def __init__(
+        self, record: SessionRecord, arrays: Arrays, path: Path | None, relocate: Relocate | None
+    ) -> None:
+        self._record, self._arrays, self._path = record, arrays, path
+        self._finder = Finder(None if path is None else path.parent, relocate)
+        try:
+            saved = unpack(record.sitting, arrays)
+        except MalformedError as error:
+            raise FileError(path or "-", f"is damaged: {error}") from error
+        self._history = History(saved)
+        self._saved = saved
+        self._takes = {take.id: take for take in record.takes}
+        self._settled: Settled | None = None
+        self._problems: list[SessionProblem] = []
+        self._recovered: Recovered | None = None
+
+    def tell(self, path: Path, what: str, performer: str | None = None) -> None:
+        """Add a problem that the user will be told."""
+        self._problems.append(SessionProblem(path, what, performer))
+
+    def replay(self, found: Found) -> None:
+        """Do again what a journal says, up to its first damaged record.
+
+        A journal that follows another save than the one at hand was folded in already.
+        """
+        if found.base != self._record.save:
+            return
+        done = 0
+        try:
+            for event in found.events:
+                self._one(event)
+                done += isinstance(event, Stepped)
+        except MalformedError as error:
+            self.tell(found.path, f"cannot be recovered in full: {error}")
+        if done:
+            steps = f"{done} step{'' if done == 1 else 's'}"
+            self.tell(found.path, f"{steps} recovered that had not been saved")
+        if found.lost:
+            self.tell(found.path, f"its end is torn, {found.lost} bytes were left out")
+        self._recovered = Recovered(found.path, found.length)
+
+    def _one(self, event: Event) -> None:
+        match event:
+            case Opened(take, samples):
+                self._arrays |= from_text(samples)
+                self._takes[take.id] = take
+            case Closed(performer):
+                self._takes.pop(performer, None)
+                self._history = advanced(self._history, event)
+            case Settled():
+                self._settled = event
+            case _:
+                self._history = advanced(self._history, event)
+
+    def document(self, author: str | None = None) -> Document:
+        """Find the takes and make the document."""
+        document = Document(author)
+        performers, absent = [], []
+        for record in self._takes.values():
+            performer = self._performer(record)
+            if performer is None:
+                absent.append(record)
+            else:
+                performers.append(performer)
+        document.absent = tuple(absent)
+        scene = Scene(tuple(performers))
+        here = {p.id for p in performers}
+        document.restore(
+            scene,
+            self._history,
+            {p: tuple(map(unpack_flag, f)) for p, f in self._record.flags.items() if p in here},
+            self._record.choices,
+            context=self._context(),
+            parameters=self._parameters(),
+            **self._view(scene),
+        )
+        if self._path is not None:
+            document.mark_saved(self._path, self._record.save, self._saved)
+        document.recovered = self._recovered
+        document.set_problems(self._problems)
+        return document
+
+    def _performer(self, record: TakeRecord) -> Performer | None:
+        try:
+            found = self._finder.find(record, self._arrays)
+        except MalformedError as error:
+            raise FileError(self._path or "-", f"is damaged: {error}") from error
+        if found.problem is not None:
+            self.tell(Path(record.absolute or record.name), found.problem, record.id)
+        if found.take is None:
+            return None
+        places = {} if self._settled is None else self._settled.places
+        offset, partner = places.get(record.id, (record.offset, record.partner))
+        return Performer(record.id, found.take, offset, partner)
+
+    def _context(self) -> tuple[Path, ...]:
+        if self._settled is not None:
+            return tuple(Path(one) for one in self._settled.context)
+        folder = None if self._path is None else self._path.parent
+        paths = []
+        for one in self._record.context:
+            beside = None if folder is None or one.relative is None else folder / one.relative
+            there = beside is not None and beside.exists()
+            path = absolute(beside) if beside is not None and there else None
+            paths.append(path or Path(one.absolute))
+            if not paths[-1].exists():
+                self.tell(paths[-1], "of the context is missing")
+        return tuple(paths)
+
+    def _parameters(self) -> DetectionParameters:
+        kept: Mapping[str, Any] = (
+            self._record.parameters if self._settled is None else self._settled.parameters
+        )
+        default = DetectionParameters()
+        known = {name: value for name, value in kept.items() if hasattr(default, name)}
+        try:
+            return replace(default, **known)
+        except (ParameterError, TypeError) as error:
+            self.tell(self._path or Path("-"), f"its parameters are not used: {error}")
+            return default
+
+    def _view(self, scene: Scene) -> dict[str, Any]:
+        record = self._record
+        wanted = record.active if self._settled is None else self._settled.active
+        ids = [p.id for p in scene.performers]
+        if wanted not in ids:
+            active = next((p.id for p in scene.performers if not p.partner), "")
+            active = active or (ids[0] if ids else "")
+            return {"active": active, "selection": Selection(active)}
+        if wanted != record.active:
+            return {"active": wanted, "selection": Selection(wanted)}
+        take = scene.performer(wanted).take
+        selection = Selection(wanted, frozenset(record.joints), record.span, record.flag)
+        frame = min(max(record.frame, 0), take.frames - 1)
+        return {"active": wanted, "selection": selection, "frame": frame}
