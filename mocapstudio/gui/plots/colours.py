@@ -12,14 +12,16 @@ from PySide6.QtGui import QColor
 from mocapstudio.gui.plots.pooling import LEVELS
 from mocapstudio.gui.theme import Theme
 
-# Parts of the theme's perceptual map: all that is quiet shares the low part, all that is above
-# the threshold the high one, so the threshold itself is a visible step in lightness.
-_QUIET = {"dark": (0.0, 0.36), "light": (0.0, 0.16)}
+# Above the threshold the loud part of the theme's perceptual map is used; below it the colour
+# runs from the plot's own ground to the quiet one, so that the threshold is a visible step in
+# lightness and nothing at all looks like nothing at all.
+_QUIET = {"dark": "#5a1a6b", "light": "#c3cde3"}
 _LOUD = {"dark": (0.58, 0.98), "light": (0.46, 1.0)}
 
+# Apart in lightness too: x and y look alike to many without it.
 _AXES = {
-    "dark": {"x": "#ff8a5b", "y": "#8fd16a", "z": "#5cb8f0"},
-    "light": {"x": "#c2410c", "y": "#4d7c0f", "z": "#0b6bb8"},
+    "dark": {"x": "#ff7350", "y": "#c2e36b", "z": "#55aaff"},
+    "light": {"x": "#bf360c", "y": "#7c9400", "z": "#0b62b8"},
 }
 
 
@@ -27,18 +29,20 @@ _AXES = {
 def lookup_table(theme: Theme, threshold: float) -> NDArray[np.uint32]:
     """(256,) colours as 0xffRRGGBB for digression 0..1, with a step at the threshold."""
     value = np.arange(LEVELS) / (LEVELS - 1)
-    quiet, loud = _QUIET[theme.name], _LOUD[theme.name]
     above = value >= threshold - 0.5 / (LEVELS - 1)
-    low = quiet[0] + (quiet[1] - quiet[0]) * value / max(threshold, 1e-6)
-    high = loud[0] + (loud[1] - loud[0]) * (value - threshold) / max(1.0 - threshold, 1e-6)
-    rgb = pg.colormap.get(theme.colormap).map(np.where(above, high, low), mode="byte")[:, :3]
-    # Nothing at all should look like nothing at all: the plot's own ground.
-    field = QColor(theme.field)
-    ground = np.array([field.red(), field.green(), field.blue()])
-    share = np.clip(low / (0.35 * quiet[1]), 0.0, 1.0)[:, None]
-    rgb = np.where(above[:, None], rgb, ground + (rgb - ground) * share).astype(np.uint32)
+    first, last = _LOUD[theme.name]
+    loud = first + (last - first) * (value - threshold) / max(1.0 - threshold, 1e-6)
+    shown = pg.colormap.get(theme.colormap).map(np.clip(loud, 0.0, 1.0), mode="byte")[:, :3]
+    share = np.clip(value / max(threshold, 1e-6), 0.0, 1.0)[:, None]
+    ground, quiet = _rgb(theme.field), _rgb(_QUIET[theme.name])
+    rgb = np.where(above[:, None], shown, ground + (quiet - ground) * share).astype(np.uint32)
     table: NDArray[np.uint32] = 0xFF000000 | rgb[:, 0] << 16 | rgb[:, 1] << 8 | rgb[:, 2]
     return table
+
+
+def _rgb(colour: str) -> NDArray[np.float64]:
+    parsed = QColor(colour)
+    return np.array([parsed.red(), parsed.green(), parsed.blue()], dtype=np.float64)
 
 
 def component(theme: Theme, name: str) -> QColor:

@@ -184,7 +184,9 @@ def draw_trim(p: QPainter, at: Frame, trim: tuple[int, int] | None) -> None:
 def flag_cell(at: Frame, flag: Flag) -> QRectF | None:
     """Rectangle of a flag's outline, never too narrow to be seen or hit."""
     cell = at.cell(flag.joint, flag.start, flag.end, _NARROWEST)
-    return None if cell is None else cell.adjusted(-0.5, -0.5, 0.5, -0.5)
+    # In thin rows the outline stays off the cells, or nothing of them would be left to see.
+    off = 0.5 if at.rows.row_height >= 7 else 1.5
+    return None if cell is None else cell.adjusted(-off, -off, off, off - 1.0)
 
 
 def draw_flags(p: QPainter, at: Frame, queue: Iterable[QueueItem]) -> None:

@@ -95,7 +95,7 @@ def curves(
     quantity: Quantity,
     *,
     order: str = "ZXY",
-    near: Take | None = None,
+    near: Array | None = None,
 ) -> Curves:
     """Compute one quantity of one row for every frame of a take.
 
@@ -110,9 +110,9 @@ def curves(
     order
         Axes of the Euler angles, outermost first.
     near
-        A take of F frames; where a rotation has several descriptions (turns of 360°, the two
-        triples of Euler angles), the one nearest to that take's is chosen, so that both can be
-        drawn over each other.
+        (F, C) values of the same quantity, of another motion: where a rotation has several
+        descriptions (turns of 360°, the two triples of Euler angles), the one nearest to these is
+        chosen, so that both can be drawn over each other.
 
     Raises
     ------
@@ -120,20 +120,22 @@ def curves(
         If the take has no such row.
     """
     unit = _UNITS[quantity]
+    goal = None if near is None else np.radians(near)
     if quantity is Quantity.HEADING:
-        return _pack(("heading",), unit, np.degrees(_heading(take, near))[:, None])
+        heading = split_heading(take)[0]
+        if goal is not None:
+            heading = goal[:, 0] + _wrapped(heading - goal[:, 0])
+        return _pack(("heading",), unit, np.degrees(heading)[:, None])
     if quantity is Quantity.POSITION:
         return _pack(_AXES, unit, world_position(take, row))
     if quantity is Quantity.SPEED:
         return _pack(("speed",), unit, speed(world_position(take, row), float(take.rate))[:, None])
     if quantity is Quantity.TURNING:
         return _pack(("speed",), unit, _turning(take, row)[:, None])
-    joint = take.skeleton.index[row]
-    q = take.rotations[:, joint]
-    other = None if near is None else near.rotations[:, joint]
+    q = take.rotations[:, take.skeleton.index[row]]
     if quantity is Quantity.ROTATION:
-        return _pack(_AXES, unit, np.degrees(rotation_vectors(q, other)))
-    angles = np.degrees(euler_angles(order, q, other))
+        return _pack(_AXES, unit, np.degrees(rotation_vectors(q, goal)))
+    angles = np.degrees(euler_angles(order, q, goal))
     return _pack(tuple(letter.lower() for letter in order), unit, angles)
 
 
@@ -144,37 +146,36 @@ def _pack(names: tuple[str, ...], unit: str, values: Array) -> Curves:
 def rotation_vectors(q: Array, near: Array | None = None) -> Array:
     """(F, 3) radians: rotation vectors that pass 180° without a jump.
 
-    The angle is read off sign-continuous quaternions and so runs to 360°; with `near` (F, 4) the
-    signs follow those of that curve.
+    The angle is read off sign-continuous quaternions and so runs to 360°; with `near` (F, 3) the
+    description nearest to those vectors is taken at each frame.
     """
-    q = _upright(rot.continuous(q)) if near is None else _aligned(q, _upright(rot.continuous(near)))
+    q = rot.continuous(q)
+    if q[:, 3].sum() < 0:
+        q = -q
     norm = np.linalg.norm(q[:, :3], axis=-1, keepdims=True)
-    half = np.arctan2(norm, q[:, 3:])
-    factor = np.where(norm > 1e-12, 2.0 * half / np.where(norm > 1e-12, norm, 1.0), 2.0)
-    return np.asarray(q[:, :3] * factor)
-
-
-def _upright(q: Array) -> Array:
-    return -q if q[:, 3].sum() < 0 else q
-
-
-def _aligned(q: Array, to: Array) -> Array:
-    return np.where(np.sum(q * to, axis=-1, keepdims=True) < 0, -q, q)
+    some = np.where(norm > 1e-12, norm, 1.0)
+    angle = 2.0 * np.arctan2(norm, q[:, 3:])
+    vectors = q[:, :3] * np.where(norm > 1e-12, angle / some, 2.0)
+    if near is None:
+        return np.asarray(vectors)
+    # The same turn taken the other way round.
+    others = q[:, :3] / some * (angle - 2.0 * np.pi)
+    apart = np.linalg.norm(vectors - near, axis=-1) - np.linalg.norm(others - near, axis=-1)
+    return np.where((apart > 0)[:, None], others, vectors)
 
 
 def euler_angles(order: str, q: Array, near: Array | None = None) -> Array:
     """(F, 3) radians: intrinsic Euler angles without jumps between their two descriptions.
 
     ``(a, b, c)`` and ``(a + pi, pi - b, c + pi)`` are the same rotation. Each frame takes the one
-    nearest to the frame before, or, with `near` (F, 4), nearest to that curve's.
+    nearest to the frame before, or, with `near` (F, 3), nearest to those angles.
     """
     first = rot.to_euler(order, q)
     second = np.stack([first[:, 0] + np.pi, np.pi - first[:, 1], first[:, 2] + np.pi], axis=-1)
     if near is not None:
-        goal = euler_angles(order, near)
-        pick = _turns(second - goal) < _turns(first - goal)
+        pick = _turns(second - near) < _turns(first - near)
         chosen = np.where(pick[:, None], second, first)
-        return np.asarray(goal + _wrapped(chosen - goal))
+        return np.asarray(near + _wrapped(chosen - near))
     # Both ways to stay cost the same, and so do both ways to change: the choice is a parity.
     stay = _turns(first[1:] - first[:-1])
     change = _turns(second[1:] - first[:-1])
@@ -217,7 +218,7 @@ def speed(positions: Array, rate: float) -> Array:
 def _turning(take: Take, row: str) -> Array:
     rate = float(take.rate)
     if row == ROOT_HEADING:
-        steps = np.abs(_wrapped(np.diff(_heading(take, None))))
+        steps = np.abs(np.diff(split_heading(take)[0]))
     else:
         q = take.rotations[:, take.skeleton.index[row]]
         steps = rot.angle(q[1:], q[:-1])
@@ -228,11 +229,3 @@ def _repeat_first(steps: Array, frames: int) -> Array:
     if len(steps) == 0:
         return np.zeros(frames)
     return np.concatenate([steps[:1], steps])
-
-
-def _heading(take: Take, near: Take | None) -> Array:
-    heading = split_heading(take)[0]
-    if near is None:
-        return heading
-    goal = split_heading(near)[0]
-    return np.asarray(goal + _wrapped(heading - goal))
