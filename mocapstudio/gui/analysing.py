@@ -1,0 +1,126 @@
+"""Keeps the analysis of the take under review up to date, in the background."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Sequence
+from dataclasses import replace
+
+from PySide6.QtCore import QObject
+
+from mocapstudio.cleaning.analysis import Analysis
+from mocapstudio.cleaning.parameters import DetectionParameters
+from mocapstudio.gui.document import DocumentBridge
+from mocapstudio.gui.jobs import Job, Jobs
+from mocapstudio.gui.messages import Messages
+from mocapstudio.motion.declared import Declared
+from mocapstudio.motion.progress import Progress
+from mocapstudio.motion.recording import without_itself
+from mocapstudio.motion.take import Take
+from mocapstudio.review.state import DocumentState
+
+_KEY = "analysis"
+
+
+class Analysing(QObject):
+    """Analyses a take when it comes under review, and again when what it depends on changes.
+
+    Parameters
+    ----------
+    bridge
+        The document's door.
+    jobs
+        Runs the analysis.
+    messages
+        Is told what went wrong.
+    parent
+        Qt's parent.
+    """
+
+    def __init__(
+        self,
+        bridge: DocumentBridge,
+        jobs: Jobs,
+        messages: Messages,
+        parent: QObject | None = None,
+    ) -> None:
+        super().__init__(parent)
+        self._bridge, self._jobs, self._messages = bridge, jobs, messages
+        self._done: dict[str, tuple[object, ...]] = {}
+        self._job: Job | None = None
+        bridge.changed.connect(self._follow)
+
+    def again(self) -> None:
+        """Analyse the take under review, whether or not anything changed."""
+        active = self._bridge.state.active
+        if active:
+            self._start(active)
+
+    def _follow(self, old: DocumentState, new: DocumentState) -> None:
+        for gone in set(self._done) - {one.id for one in new.scene.performers}:
+            del self._done[gone]
+        if not new.active:
+            self._jobs.cancel(_KEY)
+        elif self._done.get(new.active) != self._wants(new.active):
+            self._start(new.active)
+
+    def _wants(self, performer: str) -> tuple[object, ...]:
+        """Return what the analysis depends on, save the threshold: that re-flags at once."""
+        state, document = self._bridge.state, self._bridge.document
+        return (
+            state.scene.performer(performer).take,
+            document.context_takes,
+            state.mode,
+            dict(state.sitting.trims).get(performer),
+        )
+
+    def _start(self, performer: str) -> None:
+        state, document = self._bridge.state, self._bridge.document
+        # Noted before the end, so that a failure or a cancel is not tried over and over.
+        self._done[performer] = self._wants(performer)
+        generation = document.begin_analysis(performer)
+        parameters = state.parameters or DetectionParameters()
+        parameters = replace(parameters, mode=state.mode, threshold=state.threshold)
+        take = document.source(performer)
+        work = _analysis(
+            take,
+            without_itself(document.context_takes, take),
+            parameters,
+            document.normal(performer),
+            document.protected(performer),
+        )
+
+        def finished(analysis: Analysis) -> None:
+            if self._bridge.document is not document:
+                return
+            document.finish_analysis(performer, generation, analysis)
+            count = len(analysis.flags)
+            words = f"{count} flags" if count != 1 else "1 flag"
+            self._messages.tell(f"{take.name}: {words}.")
+
+        self._job = self._jobs.start(
+            f"Analysing {take.name}",
+            work,
+            finished,
+            lambda error: self._messages.complain(error, f"{take.name} could not be analysed"),
+            key=_KEY,
+        )
+        self._job.ended.connect(self._tell)
+        self._tell()
+
+    def _tell(self) -> None:
+        running = any(job.key == _KEY for job in self._jobs.running)
+        self._bridge.set_ui(analysing=running)
+
+
+def _analysis(
+    take: Take,
+    context: tuple[Take, ...],
+    parameters: DetectionParameters,
+    normal: Sequence[Declared],
+    protected: Sequence[Declared],
+) -> Generator[Progress, None, Analysis]:
+    # The first import compiles or loads the kernels: that belongs in the thread too.
+    yield Progress(0.0, "loading the engine")
+    from mocapstudio.cleaning.detection import detect
+
+    return (yield from detect(take, context, parameters, normal=normal, protected=protected))

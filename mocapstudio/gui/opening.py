@@ -1,0 +1,233 @@
+"""Reading takes, partners, contexts and sessions in the background."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Signal
+
+from mocapstudio import formats
+from mocapstudio.gui import settings
+from mocapstudio.gui.document import DocumentBridge
+from mocapstudio.gui.jobs import Jobs
+from mocapstudio.gui.messages import Messages
+from mocapstudio.gui.trouble import Trouble, understand
+from mocapstudio.motion.progress import Progress
+from mocapstudio.motion.recording import same_recording
+from mocapstudio.motion.take import Take
+
+if TYPE_CHECKING:
+    from mocapstudio.formats.report import ImportReport
+    from mocapstudio.review.document import Document
+
+SESSION_SUFFIX = ".mocap"
+
+
+@dataclass
+class Read:
+    """What came of reading files: the takes, the reports, and what could not be read."""
+
+    takes: list[Take] = field(default_factory=list)
+    reports: list[ImportReport] = field(default_factory=list)
+    troubles: list[Trouble] = field(default_factory=list)
+
+
+def reading(paths: Sequence[Path], doing: str) -> Generator[Progress, None, Read]:
+    """Read files and folders; a bad file is noted and the others are read all the same."""
+    result = Read()
+    files: dict[Path, Path] = {}
+    for path in paths:
+        try:
+            files |= {one.resolve(): one for one in formats.find_takes([path])}
+        except Exception as error:
+            result.troubles.append(understand(error, doing))
+    for done, path in enumerate(files.values()):
+        yield Progress(done / len(files), f"reading {path.name}")
+        try:
+            takes, report = formats.read(path)
+        except Exception as error:
+            result.troubles.append(understand(error, doing))
+        else:
+            result.takes += takes
+            result.reports.append(report)
+    return result
+
+
+class Opening(QObject):
+    """Opens what the user names.
+
+    Parameters
+    ----------
+    bridge
+        The document's door.
+    jobs
+        Runs the reading.
+    messages
+        Is told what went wrong.
+    parent
+        Qt's parent.
+    """
+
+    opened = Signal()
+    """Emitted when takes or a session came into the scene."""
+
+    def __init__(
+        self,
+        bridge: DocumentBridge,
+        jobs: Jobs,
+        messages: Messages,
+        parent: QObject | None = None,
+    ) -> None:
+        super().__init__(parent)
+        self._bridge, self._jobs, self._messages = bridge, jobs, messages
+
+    def open(self, paths: Iterable[Path], partners: Iterable[Path] = ()) -> None:
+        """Open takes beside those that are open; the first becomes the one under review."""
+        wanted, beside = list(paths), list(partners)
+        doing = "This could not be opened"
+        if not wanted:
+            self.add_partners(beside)
+            return
+
+        def done(read: Read) -> None:
+            self._take_in(read, wanted, partner=False)
+            if beside and self._bridge.state.active:
+                self.add_partners(beside)
+
+        self._read(wanted, f"Opening {_names(wanted)}", doing, done)
+
+    def add_partners(self, paths: Iterable[Path]) -> None:
+        """Show other performers in the same scene."""
+        wanted = list(paths)
+        if wanted:
+            self._read(
+                wanted,
+                f"Adding {_names(wanted)}",
+                "This partner could not be added",
+                lambda read: self._take_in(read, wanted, partner=True),
+            )
+
+    def set_context(self, paths: Iterable[Path]) -> None:
+        """Search other takes for neighbours; none means the take itself only."""
+        wanted = list(paths)
+        if not wanted:
+            self._bridge.document.set_context((), ())
+            return
+        doing = "This could not be used as context"
+        self._read(
+            wanted,
+            "Reading the context",
+            doing,
+            lambda read: self._use_context(read, wanted),
+            key="context",
+        )
+
+    def open_session(self, path: Path) -> None:
+        """Put a session in the place of what is open."""
+
+        def work() -> Generator[Progress, None, Document]:
+            yield Progress(0.0, f"opening {path.name}")
+            from mocapstudio.review import session_file
+
+            return session_file.load(path)
+
+        def done(document: Document) -> None:
+            self._jobs.cancel()
+            self._bridge.replace(document)
+            settings.add_recent("files", path)
+            settings.set_folder("open", path)
+            self.opened.emit()
+            problems = document.state.problems
+            doing = "The session was opened, with a reservation"
+            self._messages.complain_of([Trouble(doing, p.what, str(p.path)) for p in problems])
+            self._read_context_of(document)
+
+        self._jobs.start(
+            f"Opening {path.name}",
+            work(),
+            done,
+            lambda error: self._messages.complain(error, "The session could not be opened"),
+            key="session",
+        )
+
+    def _read_context_of(self, document: Document) -> None:
+        wanted = [Path(path) for path in document.state.context]
+        if wanted and not document.context_takes:
+            self.set_context(wanted)
+
+    def _read(
+        self,
+        paths: list[Path],
+        title: str,
+        doing: str,
+        done: Callable[[Read], None],
+        key: str | None = None,
+    ) -> None:
+        self._jobs.start(
+            title,
+            reading(paths, doing),
+            done,
+            lambda error: self._messages.complain(error, doing),
+            key=key,
+        )
+
+    def _take_in(self, read: Read, paths: list[Path], *, partner: bool) -> None:
+        document = self._bridge.document
+        first = ""
+        for take in read.takes:
+            known = self._known(take)
+            opened = known or document.open_take(take, partner=partner)
+            first = first or opened
+        if first and not partner:
+            document.set_active(first)
+        if first:
+            purpose = "partner" if partner else "open"
+            settings.set_folder(purpose, paths[0])
+            for path in paths:
+                if path.is_file() and not partner:
+                    settings.add_recent("files", path)
+            self.opened.emit()
+            self._tell_repairs(read)
+        self._messages.complain_of(read.troubles)
+
+    def _known(self, take: Take) -> str:
+        for performer in self._bridge.state.scene.performers:
+            if same_recording(performer.take, take):
+                return performer.id
+        return ""
+
+    def _use_context(self, read: Read, paths: list[Path]) -> None:
+        if read.takes:
+            for path in paths:
+                settings.add_recent("contexts", path)
+            settings.set_folder("context", paths[0])
+            self._bridge.document.set_context(paths, read.takes)
+            count = len(read.takes)
+            words = f"{count} takes" if count > 1 else "1 take"
+            self._messages.tell(f"The context holds {words}.")
+        self._messages.complain_of(read.troubles)
+
+    def _tell_repairs(self, read: Read) -> None:
+        odd = [
+            (report.path.name, problem)
+            for report in read.reports
+            for problem in report.problems
+            if not problem.guess
+        ]
+        if odd:
+            name, problem = odd[0]
+            place = "" if problem.line is None else f" line {problem.line}:"
+            more = f" (and {len(odd) - 1} more)" if len(odd) > 1 else ""
+            self._messages.tell(f"{name}:{place} {problem.what}; {problem.done}{more}")
+
+
+def is_session(path: Path) -> bool:
+    """Tell whether a path names a session file."""
+    return path.suffix.lower() == SESSION_SUFFIX
+
+
+def _names(paths: Sequence[Path]) -> str:
+    return paths[0].name if len(paths) == 1 else f"{len(paths)} takes"
