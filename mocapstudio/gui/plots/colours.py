@@ -36,8 +36,8 @@ def lookup_table(theme: Theme, threshold: float) -> NDArray[np.uint32]:
     share = np.clip(value / max(threshold, 1e-6), 0.0, 1.0)[:, None]
     ground, quiet = _rgb(theme.field), _rgb(_QUIET[theme.name])
     rgb = np.where(above[:, None], shown, ground + (quiet - ground) * share).astype(np.uint32)
-    table: NDArray[np.uint32] = 0xFF000000 | rgb[:, 0] << 16 | rgb[:, 1] << 8 | rgb[:, 2]
-    return table
+    packed = 0xFF000000 | rgb[:, 0] << 16 | rgb[:, 1] << 8 | rgb[:, 2]
+    return np.asarray(packed, dtype=np.uint32)
 
 
 def _rgb(colour: str) -> NDArray[np.float64]:

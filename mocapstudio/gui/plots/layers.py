@@ -10,10 +10,24 @@ from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen, QPixmap, QPolygo
 from PySide6.QtWidgets import QGraphicsItem
 
 from mocapstudio.gui import theme as themes
+from mocapstudio.gui.plots import colours
 
 Draw = Callable[[QPainter, QRectF], None]
 
 _GRIP = 5.0
+
+
+def draw_trim(p: QPainter, area: QRectF, left: float, right: float) -> None:
+    """Dim what lies left and right of the trim's edges (pixels), and draw the edges."""
+    look = themes.current()
+    veil = colours.faded(look.background, 0.72)
+    p.setPen(QPen(QColor(look.faint), 1))
+    if left > area.left():
+        p.fillRect(QRectF(area.topLeft(), QPointF(left, area.bottom())) & area, veil)
+        p.drawLine(QPointF(left, area.top()), QPointF(left, area.bottom()))
+    if right < area.right():
+        p.fillRect(QRectF(QPointF(right, area.top()), area.bottomRight()) & area, veil)
+        p.drawLine(QPointF(right, area.top()), QPointF(right, area.bottom()))
 
 
 class Layer(QGraphicsItem):

@@ -165,22 +165,6 @@ def draw_edits(p: QPainter, at: Frame, edits: Iterable[Edit]) -> None:
                 p.fillRect(QRectF(cell.left(), cell.bottom() - 2, cell.width(), 2), colour)
 
 
-def draw_trim(p: QPainter, at: Frame, trim: tuple[int, int] | None) -> None:
-    """Dim what the trim leaves out, and draw its edges."""
-    if trim is None:
-        return
-    veil = colours.faded(at.theme.background, 0.72)
-    left, right = at.x(trim[0] - 0.5), at.x(trim[1] - 0.5)
-    area = at.area
-    p.setPen(QPen(QColor(at.theme.faint), 1))
-    if left > area.left():
-        p.fillRect(QRectF(area.left(), area.top(), left - area.left(), area.height()), veil)
-        p.drawLine(QPointF(left, area.top()), QPointF(left, area.bottom()))
-    if right < area.right():
-        p.fillRect(QRectF(right, area.top(), area.right() - right, area.height()), veil)
-        p.drawLine(QPointF(right, area.top()), QPointF(right, area.bottom()))
-
-
 def flag_cell(at: Frame, flag: Flag) -> QRectF | None:
     """Rectangle of a flag's outline, never too narrow to be seen or hit."""
     cell = at.cell(flag.joint, flag.start, flag.end, _NARROWEST)

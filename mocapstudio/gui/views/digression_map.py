@@ -15,7 +15,7 @@ from mocapstudio.gui.document import DocumentBridge
 from mocapstudio.gui.plots import colours, map_readout
 from mocapstudio.gui.plots import map_drawing as drawing
 from mocapstudio.gui.plots.colour_bar import ColourBar
-from mocapstudio.gui.plots.layers import Layer
+from mocapstudio.gui.plots.layers import Layer, draw_trim
 from mocapstudio.gui.plots.pooling import PooledMap
 from mocapstudio.gui.plots.row_labels import RowLabels
 from mocapstudio.gui.plots.rows import Group, RowLayout, limb_groups
@@ -221,7 +221,8 @@ class DigressionMapView(QWidget):
         )
         drawing.draw_edits(p, at, (one for one in sitting.edits if one.performer == state.active))
         trim = dict(sitting.trims).get(state.active, state.take.trim)
-        drawing.draw_trim(p, at, trim)
+        if trim is not None:
+            draw_trim(p, area, at.x(trim[0] - 0.5), at.x(trim[1] - 0.5))
 
     def _draw_flags(self, p: QPainter, area: QRectF) -> None:
         if self._pooled is not None and self._shown is not None:
