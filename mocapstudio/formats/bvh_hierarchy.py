@@ -7,6 +7,7 @@ import re
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from mocapstudio.formats.bvh_motion import LARGEST
 from mocapstudio.formats.report import Problem
 from mocapstudio.motion.errors import FileError
 
@@ -194,8 +195,8 @@ class _Parser:
             raise self.error(at, "OFFSET outside a joint")
         numbers = [_number(word) for word in values.split()]
         for word, value in zip(values.split(), numbers, strict=True):
-            if not math.isfinite(value):
-                raise self.error(at, f"{word!r} in an OFFSET is not a number")
+            if not abs(value) <= LARGEST:
+                raise self.error(at, f"{word!r} in an OFFSET is not a length")
         x, y, z = numbers
         hierarchy, top = self.roots[-1], self.stack[-1]
         if isinstance(top, str):

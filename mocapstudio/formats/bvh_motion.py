@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from array import array
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -17,6 +18,9 @@ Span = tuple[int, int]
 
 # Below this the plain parser is quicker than loading the compiled one.
 KERNEL_FROM_BYTES = 1_000_000
+
+LARGEST = 1e12
+"""Beyond it a number of a motion file is damage: squares of it no longer add up."""
 
 _FRAMES = re.compile(rb"\s*Frames[ \t]*:?[ \t]*([^\s]*)[^\r\n]*", re.IGNORECASE)
 _FRAME_TIME = re.compile(rb"\s*Frame[ \t]*Time[ \t]*:?[ \t]*([^\s]*)[^\r\n]*", re.IGNORECASE)
@@ -121,7 +125,7 @@ def parse_motion(reading: Reading, start: int, end: int, columns: int) -> tuple[
 
         numbers = parse_regular(reading.data, head.start, end, columns, stated)
     block = head
-    if numbers is None or (len(numbers) != stated and not reading.lenient):
+    if numbers is None or not _good(numbers, stated, lenient=reading.lenient):
         block, numbers = _Rows(reading, head, end, stated).parse()
     if len(numbers) != stated:
         reading.problems.append(
@@ -132,6 +136,14 @@ def parse_motion(reading: Reading, start: int, end: int, columns: int) -> tuple[
             )
         )
     return replace(block, frames=len(numbers)), numbers
+
+
+def _good(numbers: Array, stated: int, *, lenient: bool) -> bool:
+    return len(numbers) > 0 and (lenient or len(numbers) == stated) and _sane(numbers)
+
+
+def _sane(numbers: Array) -> bool:
+    return bool(numbers.min() >= -LARGEST and numbers.max() <= LARGEST)
 
 
 def _head(reading: Reading, start: int, end: int, columns: int) -> MotionBlock:
@@ -169,7 +181,8 @@ class _Rows:
     def __init__(self, reading: Reading, head: MotionBlock, end: int, stated: int) -> None:
         self.reading, self.head, self.stated = reading, head, stated
         self.end = end
-        self.values: list[float] = []
+        # An array of doubles: a list of floats would weigh four times as much.
+        self.values = array("d")
         self.ends: list[int] = []
         self.lines: list[int] = []
         self.decimal, self.fused = b".", False
@@ -183,11 +196,11 @@ class _Rows:
         count = self.count_rows()
         if count == 0:
             raise self.fail(self.head.line, "no frames: the motion is empty")
-        numbers = np.array(self.values[: count * columns]).reshape(count, columns)
-        if not np.isfinite(numbers).all():
-            row = int(np.flatnonzero(~np.isfinite(numbers).all(axis=1))[0])
+        numbers = np.array(self.values)[: count * columns].reshape(count, columns)
+        if not _sane(numbers):
+            row = int(np.flatnonzero(~(np.abs(numbers) <= LARGEST).all(axis=1))[0])
             line = self.lines[int(np.searchsorted(self.ends, row * columns, side="right"))]
-            raise self.fail(line, "a value is too large for a number")
+            raise self.fail(line, "a value is too large for an angle or a position")
         regular = self.ends == list(range(columns, len(self.values) + 1, columns))
         if not regular and len(self.values) == count * columns:
             self.note(self.head.line, "rows are broken over several lines", "read as whole rows")
@@ -210,7 +223,7 @@ class _Rows:
             if not cells:
                 continue
             try:
-                self.values += self.floats(cells, line)
+                self.values.extend(self.floats(cells, line))
             except _CellError as bad:
                 if len(self.values) == self.stated * self.head.columns and bad.column == 0:
                     self.trailing(number, text)

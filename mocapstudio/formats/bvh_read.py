@@ -32,6 +32,9 @@ Array = NDArray[np.float64]
 
 _MOTION = re.compile(rb"(?:^|[\r\n}])[ \t]*(MOTION)\b", re.IGNORECASE)
 _BEGINS = re.compile(rb"\s*HIERARCHY\b", re.IGNORECASE)
+
+# Seconds a frame (or milliseconds, or frames a second, where a file mistakes them).
+_SHORTEST, _LONGEST = 1e-5, 1000.0
 _BOM = b"\xef\xbb\xbf"
 
 
@@ -199,12 +202,12 @@ def stated_rate(text: str, line: int | None = None) -> tuple[Fraction | None, Pr
         return None, Problem(line, f"'Frame Time: {text}' is not a number", "")
     value = float(dotted)
     what = f"'Frame Time: {text}'"
-    if value <= 0 or value < 1e-5:
+    if not _SHORTEST <= value <= _LONGEST:
         return NO_RATE, _rate_problem(line, f"{what} is no duration of a frame", NO_RATE)
     if value in (24, 25, 30, 50, 60, 100, 120, 240):
         rate = Fraction(int(value))
         return rate, _rate_problem(line, f"{what} looks like frames a second", rate)
-    if value >= 2:
+    if value > 2:
         rate = rate_from_frame_time(f"{value / 1000:.9g}")
         return rate, _rate_problem(line, f"{what} looks like milliseconds", rate)
     return rate_from_frame_time(dotted), None
