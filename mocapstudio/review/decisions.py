@@ -41,18 +41,22 @@ def edit_of(
     """
     check_rows(take, proposal.joints)
     check_span(take, proposal.start, proposal.end)
+    rows = _declared_rows(take, proposal, flag)
+    what = f"the proposal for {', '.join(rows)}"
+    if not rows:
+        raise MocapError("the proposal changes nothing")
     shape = (proposal.end - proposal.start, len(proposal.joints), 4)
     moved = proposal.translations
     fits = moved is None or moved.shape == (shape[0], 3)
     if proposal.rotations.shape != shape or not fits:
-        raise MocapError(f"the proposal for {', '.join(proposal.joints)} has samples of odd shape")
+        raise MocapError(f"{what} has samples of odd shape")
     finite = np.isfinite(proposal.rotations).all() and (moved is None or np.isfinite(moved).all())
     if not finite:
-        raise MocapError(f"the proposal for {', '.join(proposal.joints)} has missing samples")
+        raise MocapError(f"{what} has missing samples")
     return Edit(
         edit_id,
         performer,
-        _declared_rows(take, proposal, flag),
+        rows,
         proposal.joints,
         proposal.start,
         proposal.end,

@@ -38,9 +38,9 @@ def _check_edit(take: Take, edit: Edit, spans: Iterable[Protected]) -> None:
         start, end = max(edit.start, span.start), min(edit.end, span.end)
         if start >= end:
             continue
-        closed = {samples_of(take, row) for row in span.joints}
+        closed = frozenset[object]().union(*(samples_of(take, row) for row in span.joints))
         for row in edit.rows:
-            if not span.joints or samples_of(take, row) in closed:
+            if not span.joints or samples_of(take, row) & closed:
                 raise ProtectedError(f"{row} is protected in frames {start} to {end}")
 
 

@@ -28,24 +28,29 @@ def rows_of(take: Take) -> tuple[str, ...]:
     return (*take.skeleton.names, *ROOT_ROWS)
 
 
-def samples_of(take: Take, row: str) -> Samples:
-    """Tell which samples a row stands for.
+def samples_of(take: Take, row: str) -> frozenset[Samples]:
+    """Tell which samples a row stands for, as `formats` does when it writes declared changes.
 
-    ``root position`` are the translations of the joint that carries the body, ``root heading``
-    the rotations of the hips, any other row the rotations of that joint.
+    ``root position`` is the translation of the joint that carries the body, ``root heading`` the
+    rotations of the hips and the joints above them; any other row is the rotation of that joint,
+    and its own translation where it has one and does not carry the body.
 
     Raises
     ------
     MocapError
         If the take has no such row.
     """
+    body = carrier(take)
     if row == ROOT_POSITION:
-        return Samples("translation", carrier(take))
+        return frozenset({Samples("translation", body)})
     if row == ROOT_HEADING:
-        return Samples("rotation", topology(take.skeleton).hips)
-    if row not in take.skeleton.index:
+        parts = topology(take.skeleton)
+        return frozenset(Samples("rotation", j) for j in (parts.hips, *parts.above_hips))
+    joint = take.skeleton.index.get(row)
+    if joint is None:
         raise MocapError(f"{take.name} has no joint named {row}")
-    return Samples("rotation", take.skeleton.index[row])
+    own = {Samples("translation", t) for t, j in enumerate(take.translated) if j == joint}
+    return frozenset({Samples("rotation", joint)} | own - {Samples("translation", body)})
 
 
 def check_rows(take: Take, rows: Iterable[str]) -> None:
