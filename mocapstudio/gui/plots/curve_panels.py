@@ -12,7 +12,7 @@ from mocapstudio.gui import theme as themes
 from mocapstudio.gui.plots import colours
 from mocapstudio.gui.plots.axes import small_font
 from mocapstudio.gui.plots.curve_set import Role, pen
-from mocapstudio.gui.plots.quantities import Quantity, unit_of
+from mocapstudio.gui.plots.quantities import Quantity
 from mocapstudio.gui.plots.time_plot import LEFT_GUTTER, RIGHT_GUTTER
 
 VALUE_AXIS_WIDTH = 50
@@ -36,10 +36,11 @@ class CurvePanel(QWidget):
         self.chooser = QComboBox()
         self.chooser.setToolTip("What the curves show")
         self.chooser.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self.chooser.setFont(small_font(12))
         self.chooser.activated.connect(self._choose)
         self.legend = Legend()
         column = QVBoxLayout(self)
-        column.setContentsMargins(10, 7, 4, 4)
+        column.setContentsMargins(8, 7, 2, 4)
         column.setSpacing(6)
         column.addWidget(self.name)
         column.addWidget(self.chooser)
@@ -63,7 +64,7 @@ class CurvePanel(QWidget):
             if offered != list(quantities):
                 self.chooser.clear()
                 for one in quantities:
-                    self.chooser.addItem(f"{one} ({unit_of(one)})", one)
+                    self.chooser.addItem(str(one), one)
             self.chooser.setCurrentIndex(list(quantities).index(chosen))
 
     def _choose(self, number: int) -> None:
@@ -113,17 +114,16 @@ class ReadOut(QWidget):
         super().__init__(parent)
         self.setFixedWidth(RIGHT_GUTTER)
         self._lines: tuple[tuple[str, str], ...] = ()
-        self._unit = ""
 
     @property
     def lines(self) -> tuple[tuple[str, str], ...]:
         """Component and value, as drawn."""
         return self._lines
 
-    def show_values(self, lines: tuple[tuple[str, str], ...], unit: str) -> None:
+    def show_values(self, lines: tuple[tuple[str, str], ...]) -> None:
         """Say what the values are; equal ones cost nothing."""
-        if (lines, unit) != (self._lines, self._unit):
-            self._lines, self._unit = lines, unit
+        if lines != self._lines:
+            self._lines = lines
             self.update()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
@@ -142,8 +142,4 @@ class ReadOut(QWidget):
                 p.drawText(room, int(left), name)
             p.drawText(room, int(right), value)
             top += 18
-        if self._lines:
-            p.setFont(small_font(10))
-            p.setPen(QColor(look.faint))
-            p.drawText(QRectF(8, top, self.width() - 16, 15), int(right), self._unit)
         p.end()

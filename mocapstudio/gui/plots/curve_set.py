@@ -119,11 +119,20 @@ class CurveSet:
         return low - 0.5 * missing - pad, high + 0.5 * missing + pad
 
 
+def differing(a: Curves, b: Curves) -> tuple[int, int]:
+    """Half-open span, a frame wider on both sides, outside of which two motions are the same."""
+    apart = np.flatnonzero((np.abs(a.values - b.values) > 1e-9).any(axis=1))
+    if not apart.size:
+        return 0, 0
+    return max(int(apart[0]) - 1, 0), min(int(apart[-1]) + 2, len(a.values))
+
+
 def _curve_item(z: int) -> pg.PlotDataItem:
     item = pg.PlotDataItem(
         clipToView=True,
         autoDownsample=True,
         downsampleMethod="peak",
+        autoDownsampleFactor=2.0,
         antialias=True,
         skipFiniteCheck=False,
     )

@@ -6,7 +6,7 @@ from enum import Enum, auto
 
 import pyqtgraph as pg
 from PySide6.QtCore import QEvent, QPointF, QRectF, Qt, Signal
-from PySide6.QtGui import QCursor, QKeyEvent, QMouseEvent, QWheelEvent
+from PySide6.QtGui import QColor, QCursor, QKeyEvent, QMouseEvent, QPainter, QWheelEvent
 
 from mocapstudio.gui import theme as themes
 from mocapstudio.gui.plots.axes import TimeAxis
@@ -93,12 +93,13 @@ class TimePlot(pg.PlotWidget):  # type: ignore[misc]
         self.viewport().setMouseTracking(True)
         time_range.changed.connect(self._follow_range)
         item.vb.sigResized.connect(lambda *_: self._place())
+        self.add_layer(Layer(_draw_ground), -3)
         self.restyle()
         self._follow_range()
 
     def restyle(self) -> None:
         """Take over the colours of the theme in force."""
-        self.setBackground(themes.current().field)
+        self.setBackground(themes.current().panel)
         self.refresh_layers()
         self.time_axis.update()
         self.play_head.update()
@@ -268,3 +269,7 @@ class TimePlot(pg.PlotWidget):  # type: ignore[misc]
             shape = Qt.CursorShape.PointingHandCursor
         if self.viewport().cursor().shape() != shape:
             self.viewport().setCursor(QCursor(shape))
+
+
+def _draw_ground(p: QPainter, area: QRectF) -> None:
+    p.fillRect(area, QColor(themes.current().field))

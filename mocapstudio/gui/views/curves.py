@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
 from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QStackedLayout, QWidget
@@ -15,7 +16,7 @@ from mocapstudio.gui.document import DocumentBridge
 from mocapstudio.gui.plots import colours
 from mocapstudio.gui.plots.axes import ValueAxis
 from mocapstudio.gui.plots.curve_panels import VALUE_AXIS_WIDTH, CurvePanel, ReadOut
-from mocapstudio.gui.plots.curve_set import CurveSet, Role
+from mocapstudio.gui.plots.curve_set import CurveSet, Role, differing
 from mocapstudio.gui.plots.layers import Layer, draw_trim
 from mocapstudio.gui.plots.quantities import (
     Curves,
@@ -165,8 +166,11 @@ class CurvesView(QWidget):
         result = None
         if changed:
             result = curves(self._result, row, quantity, order=order, near=original.values)
-        self.curve_set.set(Role.ORIGINAL, original)
-        self.curve_set.set(Role.RESULT, result)
+        first, last = (0, 0) if result is None else differing(original, result)
+        edited = first < last
+        beside = replace(original, values=original.values[first:last]) if edited else original
+        self.curve_set.set(Role.ORIGINAL, beside, first)
+        self.curve_set.set(Role.RESULT, result if edited else None)
         start, offered = self._offered(row, quantity, order, original)
         self.curve_set.set(Role.PROPOSAL, offered, start)
         self.panel.offer(quantities_of(row), quantity)
@@ -195,7 +199,11 @@ class CurvesView(QWidget):
             self._proposal, start=self._proposal.start - start, end=self._proposal.end - start
         )
         near = original.values[start:end]
-        return start, curves(apply(piece, moved), row, quantity, order=order, near=near)
+        offered = curves(apply(piece, moved), row, quantity, order=order, near=near)
+        # Once accepted it is the result.
+        current = curves(piece, row, quantity, order=order, near=near)
+        alike = np.allclose(offered.values, current.values, atol=1e-9, equal_nan=True)
+        return start, None if alike else offered
 
     @property
     def _take(self) -> Take | None:
@@ -218,11 +226,11 @@ class CurvesView(QWidget):
         frame = 0 if self._shown is None else self._shown.frame
         values = self.curve_set.value(role, frame)
         if quantity is None or shown is None or values is None:
-            self.values.show_values((), "")
+            self.values.show_values(())
             return
         unit = unit_of(quantity)
-        texts = (f"{value + 0.0:.{_DECIMALS[unit]}f}".replace("-", "−") for value in values)
-        self.values.show_values(tuple(zip(shown.names, texts, strict=True)), unit)
+        texts = (_written(float(value), unit) for value in values)
+        self.values.show_values(tuple(zip(shown.names, texts, strict=True)))
 
     def changeEvent(self, event: QEvent) -> None:
         """Follow the theme."""
@@ -298,6 +306,11 @@ def _row_of(state: DocumentState) -> str | None:
         return chosen.flag.joint
     every = (*take.skeleton.names, *ROOT_ROWS)
     return next((name for name in every if name in state.selection.joints), None)
+
+
+def _written(value: float, unit: str) -> str:
+    number = f"{value:.{_DECIMALS[unit]}f}".replace("-", "−")
+    return number + unit if unit.startswith("°") else f"{number} {unit}"
 
 
 def _veil(colour: str, alpha: float) -> QColor:
