@@ -12,7 +12,7 @@ import numpy as np
 from mocapstudio.cleaning.model import Kind
 from mocapstudio.evaluation.corpora import Entry, Split, entries, join, read_some
 from mocapstudio.evaluation.corpora import split as half
-from mocapstudio.evaluation.injection import ERRORS_A_MINUTE, KINDS, corrupt
+from mocapstudio.evaluation.injection import ERRORS_A_MINUTE, KINDS, corrupt, recur
 from mocapstudio.evaluation.shapes import Family
 from mocapstudio.evaluation.truth import Mask, Truth, analysed_rows, erroneous
 from mocapstudio.motion.errors import MocapError
@@ -71,6 +71,7 @@ def cases(
     family: Family = "standard",
     dirty_context: bool = False,
     foreign: str | None = None,
+    recurring: int = 0,
 ) -> list[Case]:
     """Make `count` cases that share one context, so that it needs preparing only once.
 
@@ -99,6 +100,8 @@ def cases(
         Whether about 5 % of the context's frames are erroneous too.
     foreign
         Take the context from this other set.
+    recurring
+        How many times the first error of a take comes again.
 
     Raises
     ------
@@ -122,6 +125,9 @@ def cases(
         )
         case_rng = np.random.default_rng([seed, i, len(context_takes), len(corpus)])
         dirty, truths = corrupt(clean, case_rng, errors_per_minute, kinds, family=family)
+        if truths and recurring:
+            dirty, again = recur(dirty, truths[0], case_rng, recurring, avoid=truths[1:])
+            truths = tuple(sorted((*again, *truths[1:]), key=lambda t: t.start))
         made.append(Case(dirty, clean, truths, context_takes, ignore))
     return made
 

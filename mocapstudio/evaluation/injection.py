@@ -163,12 +163,20 @@ def corrupt(
 
 
 def recur(
-    take: Take, truth: Truth, rng: np.random.Generator, times: int
+    take: Take,
+    truth: Truth,
+    rng: np.random.Generator,
+    times: int,
+    avoid: Sequence[Truth] = (),
 ) -> tuple[Take, tuple[Truth, ...]]:
-    """Repeat one error at `times` further places of the take, as far as there is room."""
+    """Repeat one error of a take at `times` further places, as far as there is room.
+
+    Returns the take, and the error with its repetitions; they keep away from those of `avoid`.
+    """
     spoilt, truths = take, [truth]
     for _ in range(times):
-        at = _place(take, truth.end - truth.start, rng, [(t.start, t.end) for t in truths])
+        others = [(t.start, t.end) for t in (*truths, *avoid)]
+        at = _place(take, truth.end - truth.start, rng, others)
         if at is None:
             break
         again = replace(truth, start=at, end=at + truth.end - truth.start)
