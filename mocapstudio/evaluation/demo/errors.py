@@ -16,7 +16,7 @@ _SEED = 7
 _PLAN: tuple[tuple[float, Kind, tuple[str, ...] | None], ...] = (
     (5.2, Kind.SPIKE, ("LeftForeArm",)),
     (9.0, Kind.OFFSET, ("RightUpLeg",)),
-    (13.1, Kind.FREEZE, ("RightArm", "RightForeArm")),
+    (13.1, Kind.FREEZE, ("RightArm",)),
     (25.4, Kind.NOISE, ("LeftLeg",)),
     (29.2, Kind.ROOT_POP, None),
     (33.2, Kind.LIMB, ("LeftArm", "LeftForeArm", "LeftHand")),

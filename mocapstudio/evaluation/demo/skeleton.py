@@ -27,7 +27,7 @@ STANDING_HEIGHT = ANKLE_HEIGHT + SHANK + THIGH - HIP[1]
 """Metres: the pelvis above the floor with straight legs."""
 
 _TRUNK: tuple[tuple[str, str, tuple[float, float, float]], ...] = (
-    ("Hips", "", (0.0, STANDING_HEIGHT, 0.0)),
+    ("Hips", "", (0.0, 0.0, 0.0)),
     ("Spine", "Hips", (0.0, 0.090, -0.010)),
     ("Chest", "Spine", (0.0, 0.200, 0.0)),
     ("Head", "Chest", (0.0, 0.285, 0.010)),

@@ -38,9 +38,14 @@ def demo_take(seed: int = SEED) -> Take:
     """
     motion = demo_motion(seed)
     return Take(
-        name="demo",
+        name="demo" if seed == SEED else f"demo-{seed}",
         skeleton=demo_skeleton(),
         rotations=motion.rotations,
         translations=motion.root[:, None, :],
         rate=RATE,
     )
+
+
+def demo_context(count: int = 2) -> tuple[Take, ...]:
+    """Generate other recordings of the demo performer doing the same, without errors."""
+    return tuple(demo_take(seed) for seed in range(1, count + 1))
