@@ -1,0 +1,240 @@
+"""The scene in VTK: figures, marks, floor, light; put into place once for every frame."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from vtkmodules.vtkRenderingCore import vtkLight
+
+from mocapstudio.gui.viewport import floor, marks
+from mocapstudio.gui.viewport.bodies import Bodies
+from mocapstudio.gui.viewport.camera import VIEW_ANGLE, Turntable
+from mocapstudio.gui.viewport.cast import Part, Role
+from mocapstudio.gui.viewport.figure import Floats, stature
+from mocapstudio.gui.viewport.palette import Colour, Palette, mix, tint
+from mocapstudio.gui.viewport.world import Points, WorldMotion
+from mocapstudio.motion.kinematics import end_positions, take_pose
+from mocapstudio.motion.topology import topology
+
+# Where light comes from, seen from the camera (right, up, back), and how strong it is.
+_LIGHTS = (((-0.7, 0.9, 0.8), 0.85), ((0.9, 0.1, 0.5), 0.25), ((0.2, 0.7, -1.0), 0.4))
+
+_TRAIL = 0.5
+_TRAIL_STEPS = 24
+_APART = 0.003
+_SAMPLES = 48
+
+
+@dataclass(frozen=True)
+class Look:
+    """What is drawn of the roles at one frame.
+
+    Parameters
+    ----------
+    frame
+        Of the active take.
+    values
+        (J,) digression of the active performer's joints at the frame, NaN where not analysed, or
+        None while there is no map.
+    threshold
+        From which a joint counts as flagged.
+    selected
+        Indices of the selected joints.
+    trails
+        Whether they leave trails.
+    pixel
+        Size of a pixel in metres, where the camera looks.
+    """
+
+    frame: int
+    values: NDArray[np.floating] | None
+    threshold: float
+    selected: tuple[int, ...]
+    trails: bool
+    pixel: float
+
+
+class Scene3D:
+    """Everything that is drawn; three actors, whatever is on stage.
+
+    Parameters
+    ----------
+    renderer
+        Of VTK.
+    """
+
+    def __init__(self, renderer: Any) -> None:
+        self._renderer = renderer
+        self._bodies, self._marks, self._floor = Bodies(), marks.Marks(), floor.Floor()
+        for mesh in (self._floor.mesh, self._marks.mesh, self._bodies.mesh):
+            renderer.AddActor(mesh.actor)
+        self._floor.mesh.actor.ForceTranslucentOn()
+        # Three actors: finding out what is out of sight costs more than drawing it.
+        renderer.GetCullers().RemoveAllItems()
+        renderer.RemoveAllLights()
+        for place, strength in _LIGHTS:
+            light = vtkLight()
+            light.SetLightTypeToCameraLight()
+            light.SetPosition(*place)
+            light.SetIntensity(strength)
+            renderer.AddLight(light)
+        self._roles: tuple[Role, ...] = ()
+        self._palette: Palette | None = None
+        self.stature = 1.7
+        self.level = 0.0
+        self.step = 1.0
+        self._radius = 10.0
+
+    def cast(self, roles: Sequence[Role], palette: Palette) -> None:
+        """Put other figures on stage, or colour them otherwise."""
+        self._roles, self._palette = tuple(roles), palette
+        self._bodies.cast([role.figure for role in roles])
+        self._renderer.SetBackground(*(c / 255 for c in palette.bottom))
+        self._renderer.SetBackground2(*(c / 255 for c in palette.top))
+        self._renderer.GradientBackgroundOn()
+        if roles:
+            self._lay_floor(palette)
+
+    def _lay_floor(self, palette: Palette) -> None:
+        first = self._roles[0].motion
+        self.stature = stature(first.take.skeleton, first.points(0))
+        self.step = floor.spacing(self.stature)
+        self.level = floor_level(first, self.stature)
+        seen = [r.motion.hips_path for r in self._roles if r.part in (Part.RESULT, Part.PARTNER)]
+        paths = np.concatenate(seen)[:, [0, 2]]
+        # In whole steps, so that an edit of the hips does not move the floor.
+        low = np.floor(paths.min(axis=0) / self.step) * self.step
+        high = np.ceil(paths.max(axis=0) / self.step) * self.step
+        self._radius = float(np.linalg.norm(high - low)) + 10 * self.step
+        self._floor.lay(low, high, self.level, self.step, palette.floor)
+
+    def place(self, look: Look, camera: Turntable) -> None:
+        """Put everything where it is at a frame, as the camera sees it."""
+        if not self._roles or self._palette is None:
+            return
+        result = self._roles[0]
+        points = result.motion.points(look.frame)
+        for number, role in enumerate(self._roles):
+            own = role.frame(look.frame)
+            if own is None:
+                self._bodies.hide(number)
+            elif role.part is Part.RESULT:
+                self._bodies.pose(number, points, self._result_colours(look, len(points)))
+            elif role.part is Part.PARTNER:
+                pose = role.motion.points(own)
+                self._bodies.pose(number, pose, _plain(self._palette.partner, len(pose)))
+            else:
+                self._pose_ghost(number, role, role.motion.points(own), points)
+        self._bodies.changed()
+        self._mark(look, camera, points)
+        self._marks.show()
+
+    def aim(self, camera: Turntable) -> None:
+        """Show the scene from where the camera is."""
+        view = self._renderer.GetActiveCamera()
+        view.SetViewAngle(np.degrees(VIEW_ANGLE))
+        view.SetPosition(*camera.position())
+        view.SetFocalPoint(*camera.focal)
+        view.SetViewUp(*camera.basis()[1])
+        view.SetClippingRange(*camera.clipping(self._radius))
+
+    def _result_colours(self, look: Look, count: int) -> NDArray[np.uint8]:
+        assert self._palette is not None
+        skeleton = self._roles[0].motion.take.skeleton
+        if look.values is None:
+            return _plain(self._palette.body, count)
+        joints = tint(self._palette, look.values, look.threshold)
+        return np.concatenate([joints, joints[skeleton.end_parents]])
+
+    def _pose_ghost(self, number: int, role: Role, pose: Points, result: Points) -> None:
+        assert self._palette is not None
+        colour, girth = self._ghost_look(role.part)
+        apart = np.linalg.norm(pose - result, axis=1) > _APART * self.stature / 1.7
+        if not apart.any():
+            self._bodies.hide(number)
+            return
+        strong = np.ones(len(pose), dtype=bool)
+        if role.turned:
+            strong = _moved_by(role)
+        dull = mix(colour, self._palette.bottom, 0.45)
+        colours = np.where(strong[:, None], colour, dull).astype(np.uint8)
+        swell: Floats = np.where(apart, np.where(strong, 1.0, 0.7), 0.0).astype(np.float32)
+        self._bodies.pose(number, pose, colours, girth, swell)
+
+    def _ghost_look(self, part: Part) -> tuple[Colour, float]:
+        assert self._palette is not None
+        looks = {
+            Part.ORIGINAL: (self._palette.original, 0.6),
+            Part.PROPOSAL: (self._palette.proposal, 0.8),
+            Part.NEIGHBOUR: (self._palette.neighbour, 0.45),
+        }
+        return looks[part]
+
+    def _mark(self, look: Look, camera: Turntable, points: Points) -> None:
+        assert self._palette is not None
+        level = self.level - 0.004 * self.step
+        for role in self._roles:
+            own = role.frame(look.frame)
+            if own is not None and role.part in (Part.RESULT, Part.PARTNER):
+                pose = role.motion.points(own)
+                self._marks.shadow(role.figure, pose, level, self._palette.shadow)
+        motion = self._roles[0].motion
+        hips = points[topology(motion.take.skeleton).hips]
+        tone = mix(self._palette.floor, self._palette.body, 0.35)
+        heading = motion.heading(look.frame)
+        self._marks.arrow(hips, heading, self.stature, self.level, tone)
+        axes = camera.basis()
+        for joint in look.selected:
+            if look.trails:
+                self._trail(motion, joint, look.frame, camera.position())
+            radius = max(0.0225 * self.stature, 7 * look.pixel)
+            width = max(0.0028 * self.stature, 1.8 * look.pixel)
+            self._marks.ring(points[joint], radius, width, axes, self._palette.accent)
+
+    def _trail(self, motion: WorldMotion, joint: int, frame: int, eye: Points) -> None:
+        assert self._palette is not None
+        step = _TRAIL * float(motion.take.rate) / _TRAIL_STEPS
+        steps = np.arange(-_TRAIL_STEPS, _TRAIL_STEPS + 1)
+        frames = np.clip(np.round(frame + step * steps), 0, motion.take.frames - 1).astype(int)
+        share = np.abs(steps) / _TRAIL_STEPS
+        # What has been is the accent, what comes is grey; both fade into the background.
+        past = marks.fading(self._palette.accent, self._palette.bottom, 0.25 + 0.7 * share)
+        coming = marks.fading(self._palette.faint, self._palette.bottom, 0.7 * share)
+        colours = np.where((steps <= 0)[:, None], past, coming)
+        width = 0.006 * self.stature * (1 - 0.75 * share)
+        self._marks.trail(motion.path(joint, frames), width, eye, colours)
+
+
+def floor_level(motion: WorldMotion, height: float) -> float:
+    """Metres: the floor's height, zero unless the feet say clearly otherwise."""
+    take = motion.take
+    every = max(1, take.frames // _SAMPLES)
+    few = type(take)(
+        take.name,
+        take.skeleton,
+        take.rotations[::every],
+        take.translations[::every],
+        take.rate,
+        take.translated,
+    )
+    positions, world = take_pose(few)
+    tips = end_positions(take.skeleton, positions, world)
+    lowest = np.concatenate([positions, tips], axis=1)[..., 1].min(axis=1)
+    level = float(np.percentile(lowest, 10))
+    return 0.0 if abs(level) < 0.1 * height else level
+
+
+def _plain(colour: Colour, count: int) -> NDArray[np.uint8]:
+    return np.broadcast_to(np.array(colour, np.uint8), (count, 3))
+
+
+def _moved_by(role: Role) -> NDArray[np.bool_]:
+    """(J + E,): points at the far ends of the bones that the role's own joints turn."""
+    skeleton = role.motion.take.skeleton
+    turned = np.array([name in role.turned for name in skeleton.names])
+    parents = np.concatenate([skeleton.parents, skeleton.end_parents])
+    return (parents >= 0) & turned[parents]
