@@ -111,7 +111,8 @@ class Actions(QObject):
             "reopen": decided, "reject-like": item is not None, "edit": accepted,
             "protect": take and span,
             "unprotect": any(one.performer == state.active for one in state.sitting.protected),
-            "frame-joint": take,
+            "frame-joint": take, "zoom-flag": item is not None or span, "whole-take": take,
+            "new": take,
             "undo": state.can_undo is not None, "redo": state.can_redo is not None,
         }  # fmt: skip
         for k in range(6):

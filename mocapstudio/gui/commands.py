@@ -38,6 +38,7 @@ SEPARATOR = Command("", "", "")
 FILE = (
     Command("open", "&Open…", "Open takes or a session", ("Ctrl+O",), "open"),
     Command("recent", "Open &Recent", "Open something from before"),
+    Command("new", "&New Session", "Close everything and begin anew", ("Ctrl+N",)),
     Command("partner", "Add &Partner…", "Show another performer in the same scene",
             ("Ctrl+Shift+O",), "partner"),
     Command("context", "Conte&xt…", "Choose the takes that are searched for neighbours",
@@ -142,6 +143,9 @@ VIEW = (
             checkable=True),
     Command("frame-joint", "&Frame the Joint", "Move the camera to the selected joint", ("F",),
             "frame"),
+    Command("zoom-flag", "&Zoom to the Flag", "Zoom map and curves to the selected flag", ("Z",),
+            "search"),
+    Command("whole-take", "&Whole Take", "Show the whole take on map and curves", ("Shift+Z",)),
     SEPARATOR,
     Command("view-queue", "&Queue", "Show the queue", ("Ctrl+1",), checkable=True),
     Command("view-inspector", "&Inspector", "Show the inspector", ("Ctrl+2",), checkable=True),

@@ -18,12 +18,11 @@ from mocapstudio.gui.trouble import Trouble, understand
 from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.recording import same_recording
 from mocapstudio.motion.take import Take
+from mocapstudio.review.session_file import SUFFIX, load
 
 if TYPE_CHECKING:
     from mocapstudio.formats.report import ImportReport
     from mocapstudio.review.document import Document
-
-SESSION_SUFFIX = ".mocap"
 
 
 @dataclass
@@ -72,7 +71,10 @@ class Opening(QObject):
     """
 
     opened = Signal()
-    """Emitted when takes or a session came into the scene."""
+    """Emitted when takes came into the scene."""
+
+    session_read = Signal(object)
+    """Emitted with the document of a session that was read."""
 
     def __init__(
         self,
@@ -126,35 +128,29 @@ class Opening(QObject):
         )
 
     def open_session(self, path: Path) -> None:
-        """Put a session in the place of what is open."""
+        """Read a session; see `session_read`."""
 
         def work() -> Generator[Progress, None, Document]:
             yield Progress(0.0, f"opening {path.name}")
-            from mocapstudio.review import session_file
-
-            return session_file.load(path)
-
-        def done(document: Document) -> None:
-            self._jobs.cancel()
-            self._bridge.replace(document)
-            settings.add_recent("files", path)
-            settings.set_folder("open", path)
-            self.opened.emit()
-            problems = document.state.problems
-            doing = "The session was opened, with a reservation"
-            self._messages.complain_of([Trouble(doing, p.what, str(p.path)) for p in problems])
-            self._read_context_of(document)
+            return load(path)
 
         self._jobs.start(
             f"Opening {path.name}",
             work(),
-            done,
+            self.session_read.emit,
             lambda error: self._messages.complain(error, "The session could not be opened"),
             key="session",
         )
 
-    def _read_context_of(self, document: Document) -> None:
-        wanted = [Path(path) for path in document.state.context]
+    def greet(self, document: Document) -> None:
+        """Tell what was odd about a session that is on the desk now, and read its context."""
+        state = document.state
+        if state.path is not None:
+            settings.add_recent("files", state.path)
+            settings.set_folder("open", state.path)
+        doing = "The session was opened, but not all is as it was"
+        self._messages.complain_of([Trouble(doing, p.what, str(p.path)) for p in state.problems])
+        wanted = [Path(path) for path in state.context]
         if wanted and not document.context_takes:
             self.set_context(wanted)
 
@@ -226,7 +222,7 @@ class Opening(QObject):
 
 def is_session(path: Path) -> bool:
     """Tell whether a path names a session file."""
-    return path.suffix.lower() == SESSION_SUFFIX
+    return path.suffix.lower() == SUFFIX
 
 
 def _names(paths: Sequence[Path]) -> str:

@@ -64,6 +64,15 @@ class Playback(QObject):
                 self._bridge.document.set_frame(start)
         self._bridge.set_ui(playing=playing)
 
+    def toggle_loop(self) -> None:
+        """Play the selected flag over and over, or stop that."""
+        if self._bridge.ui.loop:
+            self._bridge.set_ui(loop=False, playing=False)
+            return
+        self._bridge.set_ui(loop=True)
+        if not self._bridge.ui.playing:
+            self.toggle()
+
     def tick(self) -> None:
         """Show the frame of now."""
         state = self._bridge.state

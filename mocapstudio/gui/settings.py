@@ -44,7 +44,8 @@ def forget_layout() -> None:
 def recent(kind: str) -> tuple[Path, ...]:
     """Return recent paths of one kind (``"files"`` or ``"contexts"``), latest first."""
     value = _store().value(f"recent/{kind}", [])
-    paths = [value] if isinstance(value, str) else list(value or [])
+    # Qt reads a list of one word back as that word.
+    paths = value if isinstance(value, list) else [value] if value else []
     return tuple(Path(str(path)) for path in paths)
 
 

@@ -1,0 +1,101 @@
+"""Starts the desk."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from types import TracebackType
+
+from PySide6.QtWidgets import QApplication
+
+from mocapstudio.gui import icons, settings, theme
+from mocapstudio.motion.errors import MocapError
+
+# Threads that hold the interpreter give it to the desk after this many seconds.
+_SWITCH = 0.002
+
+
+def run(
+    paths: Sequence[Path] = (), context: Sequence[Path] = (), partners: Sequence[Path] = ()
+) -> int:
+    """Open the desk and return the exit code when it is closed.
+
+    Parameters
+    ----------
+    paths
+        Takes, folders of takes, or one session.
+    context
+        Takes and folders that are searched for neighbours.
+    partners
+        Takes of other performers in the same scene.
+
+    Raises
+    ------
+    MocapError
+        If there is no display.
+    """
+    app = make_application()
+    from mocapstudio.gui.journalling import left_behind
+    from mocapstudio.gui.main_window import MainWindow
+
+    window = MainWindow()
+    _catch_faults(window.messages.complain)
+    for journal in left_behind():
+        window.welcome.offer_recovery(journal)
+    window.start()
+    window.open(list(paths), list(context), list(partners))
+    code = app.exec()
+    sys.excepthook = sys.__excepthook__
+    return code
+
+
+def make_application() -> QApplication:
+    """Set up the application with name, icon and theme; an existing one is used again.
+
+    Raises
+    ------
+    MocapError
+        If there is no display.
+    """
+    existing = QApplication.instance()
+    if isinstance(existing, QApplication):
+        app = existing
+    else:
+        _check_display()
+        app = QApplication(sys.argv[:1])
+    app.setApplicationName("mocapstudio")
+    app.setApplicationDisplayName("mocapstudio")
+    app.setDesktopFileName("mocapstudio")
+    sys.setswitchinterval(_SWITCH)
+    theme.apply(app, theme.THEMES.get(settings.text("theme", "dark"), theme.DARK))
+    app.setWindowIcon(icons.application_icon())
+    return app
+
+
+def _check_display() -> None:
+    if not sys.platform.startswith("linux") or os.environ.get("QT_QPA_PLATFORM"):
+        return
+    if not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        raise MocapError("no display: neither DISPLAY nor WAYLAND_DISPLAY is set")
+
+
+def _catch_faults(complain: object) -> None:
+    """Show exceptions that nobody caught; the desk stays open."""
+    assert callable(complain)
+    told: list[str] = []
+
+    def hook(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+        sys.__excepthook__(kind, error, trace)
+        if issubclass(kind, KeyboardInterrupt):
+            QApplication.exit(130)
+            return
+        # What goes wrong at every frame must not fill the screen with dialogs.
+        fault = f"{kind.__name__}: {error}"
+        if fault not in told:
+            told.append(fault)
+            doing = "This could not be done" if isinstance(error, MocapError) else "Internal fault"
+            complain(error, doing)
+
+    sys.excepthook = hook

@@ -1,0 +1,129 @@
+"""Writing sessions, clean takes and reports in the background."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable, Generator
+from pathlib import Path
+
+from PySide6.QtCore import QObject
+
+from mocapstudio.gui import settings
+from mocapstudio.gui.document import DocumentBridge
+from mocapstudio.gui.jobs import Jobs
+from mocapstudio.gui.messages import Messages
+from mocapstudio.motion.errors import MocapError
+from mocapstudio.motion.progress import Progress
+from mocapstudio.review.session_file import SUFFIX, save
+
+
+class HandingOver(QObject):
+    """Writes what the sitting has come to.
+
+    Parameters
+    ----------
+    bridge
+        The document's door.
+    jobs
+        Runs the writing.
+    messages
+        Is told where the file lies, or what went wrong.
+    parent
+        Qt's parent.
+    """
+
+    def __init__(
+        self,
+        bridge: DocumentBridge,
+        jobs: Jobs,
+        messages: Messages,
+        parent: QObject | None = None,
+    ) -> None:
+        super().__init__(parent)
+        self._bridge, self._jobs, self._messages = bridge, jobs, messages
+
+    def clean_path(self) -> Path:
+        """Return the name offered for the clean take: beside its source, ``_clean`` added."""
+        take = self._bridge.state.take
+        assert take is not None
+        if take.source is None:
+            return Path(settings.folder("export")) / f"{take.name}_clean.bvh"
+        return take.source.path.with_name(f"{take.source.path.stem}_clean.bvh")
+
+    def session_path(self) -> Path:
+        """Return the name offered for the session."""
+        state = self._bridge.state
+        if state.path is not None:
+            return state.path
+        take = state.take
+        if take is None or take.source is None:
+            return Path(settings.folder("session")) / f"session{SUFFIX}"
+        return take.source.path.with_suffix(SUFFIX)
+
+    def report_path(self) -> Path:
+        """Return the name offered for the report."""
+        return self.session_path().with_suffix(".html")
+
+    def export(self, path: Path) -> None:
+        """Write the take under review with its accepted repairs."""
+        # A shallow copy holds the frozen state of now, whatever is decided meanwhile.
+        document, performer = copy.copy(self._bridge.document), self._bridge.state.active
+
+        def work() -> Generator[Progress, None, int]:
+            yield Progress(0.0, f"writing {path.name}")
+            from mocapstudio.review.export import export
+
+            export(document, performer, path)
+            return len(document.declared(performer))
+
+        def done(count: int) -> None:
+            changed = "nothing was changed"
+            if count:
+                changed = f"{count} changed spans" if count > 1 else "1 changed span"
+            self._messages.tell(f"Exported {path.name}: {changed}.", path)
+
+        self._run(f"Exporting {path.name}", work(), done, f"{path.name} could not be exported")
+
+    def save(self, path: Path) -> bool:
+        """Write the session; tell whether that went well.
+
+        At once, not in the background: the document announces that it was saved.
+        """
+        try:
+            save(self._bridge.document, path)
+        except (MocapError, OSError) as error:
+            self._messages.complain(error, "The session could not be saved")
+            return False
+        settings.add_recent("files", path)
+        settings.set_folder("session", path)
+        self._messages.tell(f"Saved {path.name}.", path)
+        return True
+
+    def report(self, path: Path) -> None:
+        """Write the report."""
+        document = copy.copy(self._bridge.document)
+
+        def work() -> Generator[Progress, None, None]:
+            yield Progress(0.0, f"writing {path.name}")
+            from mocapstudio.review.report import write_report
+
+            write_report(document, path)
+
+        def done(_: object) -> None:
+            self._messages.tell(f"Wrote {path.name}.", path)
+
+        self._run(f"Writing {path.name}", work(), done, "The report could not be written")
+
+    def _run(
+        self,
+        title: str,
+        work: Generator[Progress, None, object],
+        done: Callable[..., None],
+        doing: str,
+    ) -> None:
+        self._jobs.start(
+            title,
+            work,
+            done,
+            lambda error: self._messages.complain(error, doing),
+        )

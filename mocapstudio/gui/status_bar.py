@@ -1,0 +1,84 @@
+"""The status bar: the latest note at the left, facts of the take at the right."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtCore import Qt, QTimer, QUrl
+from PySide6.QtGui import QDesktopServices
+from PySide6.QtWidgets import QLabel, QPushButton, QStatusBar
+
+from mocapstudio.gui import wording
+from mocapstudio.gui.document import DocumentBridge
+from mocapstudio.gui.messages import Messages
+from mocapstudio.gui.widgets.parts import ElidedLabel, label
+from mocapstudio.review.state import DocumentState
+
+_SHOWN_MS = 12_000
+
+
+class DeskStatusBar(QStatusBar):
+    """Notes and facts.
+
+    Parameters
+    ----------
+    bridge
+        The document's door.
+    messages
+        Where notes come from.
+    """
+
+    def __init__(self, bridge: DocumentBridge, messages: Messages) -> None:
+        super().__init__()
+        self.setObjectName("status")
+        self.setSizeGripEnabled(False)
+        self.setFixedHeight(28)
+        self._note = ElidedLabel()
+        self._note.setObjectName("note")
+        self._link = QPushButton("Show in folder")
+        self._link.setObjectName("note-link")
+        self._link.setProperty("role", "link")
+        self._link.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self._link.setCursor(Qt.CursorShape.PointingHandCursor)
+        self._link.clicked.connect(self._show_folder)
+        self._link.hide()
+        self._file: Path | None = None
+        self._facts: QLabel = label("", "", "facts")
+        self.addWidget(self._note, 1)
+        self.addWidget(self._link)
+        self.addPermanentWidget(self._facts)
+        self._timer = QTimer(self)
+        self._timer.setSingleShot(True)
+        self._timer.timeout.connect(lambda: self._tell("", None))
+        messages.told.connect(self._tell)
+        bridge.changed.connect(lambda old, new: self._show(new))
+        self._show(bridge.state)
+
+    def _tell(self, text: str, file: Path | None) -> None:
+        self._note.show_text(text)
+        self._file = file
+        self._link.setVisible(file is not None)
+        if text:
+            self._timer.start(_SHOWN_MS)
+
+    def _show_folder(self) -> None:
+        if self._file is not None:
+            QDesktopServices.openUrl(QUrl.fromLocalFile(str(self._file.parent)))
+
+    def _show(self, state: DocumentState) -> None:
+        take = state.take
+        if take is None:
+            self._facts.setText("")
+            return
+        facts = [
+            f"{take.frames} frames",
+            wording.rate(take),
+            f"{len(take.skeleton)} joints",
+        ]
+        trim = dict(state.sitting.trims).get(state.active)
+        if trim is not None and trim != (0, take.frames):
+            first, last = wording.number(take, trim[0]), wording.number(take, trim[1] - 1)
+            facts.append(f"trimmed to {first}–{last}")
+        session = "no session" if state.path is None else state.path.name
+        facts.append(f"{session}, unsaved" if state.dirty else session)
+        self._facts.setText("   ·   ".join(facts))

@@ -1,0 +1,111 @@
+"""The toolbar: open, context, analyse, what is running, mode and threshold."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QComboBox, QLabel, QSlider, QToolBar
+
+from mocapstudio.cleaning.parameters import CALIBRATED, PAPER, schema
+from mocapstudio.gui.actions import Actions
+from mocapstudio.gui.document import DocumentBridge
+from mocapstudio.gui.jobs import Jobs
+from mocapstudio.gui.widgets.job_strip import JobStrip
+from mocapstudio.gui.widgets.parts import label
+from mocapstudio.motion.errors import MocapError
+from mocapstudio.review.state import DocumentState
+
+_STEPS = 100
+
+
+class DeskToolBar(QToolBar):
+    """The bar under the menus.
+
+    Parameters
+    ----------
+    bridge
+        The document's door.
+    jobs
+        What is running.
+    actions
+        The commands behind the buttons.
+    """
+
+    def __init__(self, bridge: DocumentBridge, jobs: Jobs, actions: Actions) -> None:
+        super().__init__("Toolbar")
+        self.setObjectName("toolbar")
+        self.setMovable(False)
+        self.setContextMenuPolicy(Qt.ContextMenuPolicy.PreventContextMenu)
+        self._bridge = bridge
+        self._context = actions.tool_button("context", text="Context")
+        self.addWidget(actions.tool_button("open", text="Open"))
+        self.addWidget(actions.tool_button("partner", text="Partner"))
+        self.addWidget(self._context)
+        self.addSeparator()
+        self.addWidget(actions.tool_button("analyse", text="Analyse"))
+        self.addWidget(JobStrip(jobs, actions.tool_button("cancel")))
+        self._mode = self._make_mode()
+        self._slider, self._value = self._make_threshold()
+        self.addWidget(self._mode)
+        self.addSeparator()
+        caption = label("Threshold", "muted")
+        caption.setContentsMargins(4, 0, 4, 0)
+        self.addWidget(caption)
+        self.addWidget(self._slider)
+        self.addWidget(self._value)
+        self.addSeparator()
+        self.addWidget(actions.tool_button("undo"))
+        self.addWidget(actions.tool_button("redo"))
+        self.addSeparator()
+        self.addWidget(actions.tool_button("export", text="Export"))
+        bridge.changed.connect(lambda old, new: self._show(new))
+        self._show(bridge.state)
+
+    def _make_mode(self) -> QComboBox:
+        combo = QComboBox()
+        combo.setObjectName("mode")
+        combo.addItem("Calibrated", CALIBRATED)
+        combo.addItem("As in the paper", PAPER)
+        combo.setToolTip(
+            "Calibrated: each joint is measured by what is normal for it in this context.\n"
+            "As in the paper: by its own mean, as published; that flags far more."
+        )
+        combo.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        combo.activated.connect(lambda row: self._bridge.document.set_mode(combo.itemData(row)))
+        return combo
+
+    def _make_threshold(self) -> tuple[QSlider, QLabel]:
+        slider = QSlider(Qt.Orientation.Horizontal)
+        slider.setObjectName("threshold")
+        known = schema("threshold")
+        slider.setRange(round(_STEPS * (known.low or 0.0)), round(_STEPS * (known.high or 1.0)))
+        slider.setPageStep(5)
+        slider.setFixedWidth(150)
+        slider.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        slider.setToolTip(f"{known.help}, 0 to 1 (+ and − move it)")
+        # Only the user's own moves: a threshold set elsewhere must not come back rounded.
+        slider.actionTriggered.connect(lambda _: self._set(slider.sliderPosition() / _STEPS))
+        value = label("", "readout", "threshold-value")
+        value.setFixedWidth(38)
+        value.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        return slider, value
+
+    def step_threshold(self, by: float) -> None:
+        """Raise or lower the threshold."""
+        known = schema("threshold")
+        wanted = round(self._bridge.state.threshold + by, 4)
+        self._set(min(max(wanted, known.low or 0.0), known.high or 1.0))
+
+    def _set(self, threshold: float) -> None:
+        try:
+            self._bridge.document.set_threshold(threshold)
+        except MocapError as error:
+            self._value.setToolTip(str(error))
+
+    def _show(self, state: DocumentState) -> None:
+        self._value.setText(f"{state.threshold:.2f}")
+        self._slider.setValue(round(_STEPS * state.threshold))
+        self._mode.setCurrentIndex(max(0, self._mode.findData(state.mode)))
+        for widget in (self._slider, self._mode):
+            widget.setEnabled(state.take is not None)
+        count = len(self._bridge.document.context_takes)
+        self._context.setText(f"Context ({count})" if count else "Context")

@@ -1,0 +1,1 @@
+"""Workspaces: each assembles views for one kind of work."""

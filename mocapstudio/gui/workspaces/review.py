@@ -1,0 +1,195 @@
+"""The Review workspace: queue, viewport, digression map, curves and inspector, linked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import Qt, QTimer, Signal
+from PySide6.QtWidgets import QFrame, QSplitter, QVBoxLayout, QWidget
+
+from mocapstudio.gui import settings
+from mocapstudio.gui.actions import Actions
+from mocapstudio.gui.document import DocumentBridge
+from mocapstudio.gui.plots.time_range import TimeRange
+from mocapstudio.gui.reasons import Reasons
+from mocapstudio.gui.views.inspector import InspectorView
+from mocapstudio.gui.views.queue import QueueView
+from mocapstudio.gui.views.transport import TransportView
+from mocapstudio.gui.widgets.parts import label, panel
+
+if TYPE_CHECKING:
+    from mocapstudio.gui.views.curves import CurvesView
+    from mocapstudio.gui.views.digression_map import DigressionMapView
+    from mocapstudio.gui.views.viewport import Viewport
+
+_COLUMNS = (370, 640, 330)
+_ROWS = (460, 210, 140)
+
+
+class ReviewWorkspace(QWidget):
+    """Lays the five parts out in splitters.
+
+    Viewport, map and curves come a moment after the rest: what they are drawn with takes a second
+    to load, and the window should not wait for it.
+
+    Parameters
+    ----------
+    bridge
+        The document's door.
+    reasons
+        Neighbours of the selected flag.
+    actions
+        The commands behind the buttons.
+    """
+
+    filled = Signal()
+    """Emitted once viewport, map and curves are there."""
+
+    def __init__(self, bridge: DocumentBridge, reasons: Reasons, actions: Actions) -> None:
+        super().__init__()
+        self.setObjectName("review")
+        self._bridge = bridge
+        self.queue = QueueView(bridge)
+        self.inspector = InspectorView(bridge, reasons, actions)
+        self.transport = TransportView(bridge, actions)
+        self.viewport: Viewport | None = None
+        self.map: DigressionMapView | None = None
+        self.curves: CurvesView | None = None
+        self._stage, self._map_place, self._curves_place = _place(), _place(), _place()
+        self._columns = QSplitter(Qt.Orientation.Horizontal)
+        self._rows = QSplitter(Qt.Orientation.Vertical)
+        self._lay_out()
+        self._parts = {
+            "view-queue": self.queue,
+            "view-inspector": self.inspector,
+            "view-map": self._map_place,
+            "view-curves": self._curves_place,
+        }
+        for name, part in self._parts.items():
+            actions[name].setChecked(True)
+            actions[name].toggled.connect(part.setVisible)
+        self._actions = actions
+        self._to_fill: list[Callable[[], None]] = [
+            self._fill_map, self._fill_curves, self._fill_viewport,
+        ]  # fmt: skip
+
+    def fill(self) -> None:
+        """Begin to load viewport, map and curves, one at a time between other events."""
+        QTimer.singleShot(0, self._fill_next)
+
+    def reset_layout(self) -> None:
+        """Put all parts back where they came from."""
+        for name in self._parts:
+            self._actions[name].setChecked(True)
+        self._columns.setSizes(list(_COLUMNS))
+        self._rows.setSizes(list(_ROWS))
+
+    def frame_joint(self) -> None:
+        """Move the camera to the selected joint."""
+        if self.viewport is not None:
+            self.viewport.frame_joint(None)
+
+    def zoom_to_flag(self) -> None:
+        """Zoom map and curves to the selected flag."""
+        if self.map is not None:
+            self.map.zoom_to_selection()
+
+    def show_whole_take(self) -> None:
+        """Show the whole take on map and curves."""
+        if self.map is not None:
+            self.map.whole_take()
+
+    def remember(self) -> None:
+        """Remember sizes and what is shown."""
+        settings.set_layout("columns", self._columns.saveState())
+        settings.set_layout("rows", self._rows.saveState())
+        hidden = [name for name in self._parts if not self._actions[name].isChecked()]
+        settings.set_text("hidden", " ".join(hidden))
+        self.queue.remember()
+
+    def restore(self) -> None:
+        """Lay out as remembered."""
+        for splitter, name in ((self._columns, "columns"), (self._rows, "rows")):
+            state = settings.layout(name)
+            if state is not None:
+                splitter.restoreState(state)
+        for name in settings.text("hidden").split():
+            if name in self._parts:
+                self._actions[name].setChecked(False)
+
+    def _lay_out(self) -> None:
+        centre = QFrame()
+        centre.setObjectName("centre")
+        column = QVBoxLayout(centre)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addWidget(self._stage, 1)
+        column.addWidget(self.transport)
+        for splitter, name in ((self._columns, "columns"), (self._rows, "rows")):
+            splitter.setObjectName(name)
+            splitter.setHandleWidth(4)
+            splitter.setChildrenCollapsible(False)
+        for part in (self.queue, centre, self.inspector):
+            self._columns.addWidget(part)
+        for row in (self._columns, self._map_place, self._curves_place):
+            self._rows.addWidget(row)
+        for index, stretch in enumerate((0, 1, 0)):
+            self._columns.setStretchFactor(index, stretch)
+        for index, stretch in enumerate((6, 3, 2)):
+            self._rows.setStretchFactor(index, stretch)
+        self._columns.setSizes(list(_COLUMNS))
+        self._rows.setSizes(list(_ROWS))
+        whole = QVBoxLayout(self)
+        whole.setContentsMargins(0, 0, 0, 0)
+        whole.addWidget(self._rows)
+
+    def _fill_next(self) -> None:
+        if self._to_fill:
+            self._to_fill.pop(0)()
+        if self._to_fill:
+            QTimer.singleShot(0, self._fill_next)
+        else:
+            self.filled.emit()
+
+    def _fill_map(self) -> None:
+        from mocapstudio.gui.views.digression_map import DigressionMapView
+
+        self.time_range = TimeRange(self)
+        self.map = DigressionMapView(self._bridge, self.time_range)
+        self.map.setObjectName("digression-map")
+        _put(self._map_place, self.map)
+
+    def _fill_curves(self) -> None:
+        from mocapstudio.gui.views.curves import CurvesView
+
+        self.curves = CurvesView(self._bridge, self.time_range)
+        self.curves.setObjectName("curves")
+        _put(self._curves_place, self.curves)
+
+    def _fill_viewport(self) -> None:
+        from mocapstudio.gui.views.viewport import Viewport
+
+        self.viewport = Viewport(self._bridge)
+        self.viewport.setObjectName("viewport")
+        _put(self._stage, self.viewport)
+
+
+def _place() -> QFrame:
+    place = panel("", "panel")
+    column = QVBoxLayout(place)
+    column.setContentsMargins(0, 0, 0, 0)
+    waiting = label("Loading…", "faint", "loading")
+    waiting.setAlignment(Qt.AlignmentFlag.AlignCenter)
+    column.addWidget(waiting)
+    return place
+
+
+def _put(place: QFrame, view: QWidget) -> None:
+    waiting = place.findChild(QWidget, "loading")
+    layout = place.layout()
+    assert layout is not None
+    if waiting is not None:
+        layout.removeWidget(waiting)
+        waiting.deleteLater()
+    layout.addWidget(view)
