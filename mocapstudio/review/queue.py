@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import replace
 
-from mocapstudio.cleaning.model import Flag
+from mocapstudio.cleaning.model import Flag, Kind
 from mocapstudio.review.model import Decision, QueueItem, Verdict
 
 
@@ -32,10 +32,11 @@ def succeeds(new: Flag, decided: Flag) -> bool:
 def merge(flags: Iterable[Flag], decisions: Iterable[Decision]) -> tuple[QueueItem, ...]:
     """Return the queue: every flag and every decided flag, worst first.
 
-    Each flag takes the verdict of the decision that fits it best, by frames shared, then by
-    likeness of the spans, then the later decision. Decisions that no flag took stay listed as no
-    longer flagged, so that none ever disappears. Deferred flags come after the others, and after
-    them those no longer flagged.
+    A decision whose own flag is raised again speaks for that one only. Any other flag takes the
+    verdict of the decision that fits it best: of its kind, by frames shared, by likeness of the
+    spans, the later one. Decisions that no flag took stay listed as no longer flagged, so that
+    none ever disappears. Deferred flags come after the others, and after them those no longer
+    flagged.
 
     Parameters
     ----------
@@ -44,14 +45,19 @@ def merge(flags: Iterable[Flag], decisions: Iterable[Decision]) -> tuple[QueueIt
     decisions
         Decisions on the same performer, oldest first.
     """
-    by_joint: defaultdict[str, list[Decision]] = defaultdict(list)
-    decided = tuple(decisions)
+    flags, decided = tuple(flags), tuple(decisions)
+    places = {_place(flag) for flag in flags}
+    own: dict[_Place, Decision] = {}
+    others: defaultdict[str, list[Decision]] = defaultdict(list)
     for decision in decided:
-        by_joint[decision.flag.joint].append(decision)
+        if _place(decision.flag) in places:
+            own[_place(decision.flag)] = decision
+        else:
+            others[decision.flag.joint].append(decision)
     items: list[QueueItem] = []
     taken: set[int] = set()
     for flag in flags:
-        best = _best(flag, by_joint[flag.joint])
+        best = own.get(_place(flag)) or _best(flag, others[flag.joint])
         if best is None:
             items.append(QueueItem(flag, Verdict.OPEN))
         else:
@@ -66,14 +72,21 @@ def merge(flags: Iterable[Flag], decisions: Iterable[Decision]) -> tuple[QueueIt
     return tuple(sorted(items, key=_order))
 
 
+_Place = tuple[str, int, int, Kind]
+
+
+def _place(flag: Flag) -> _Place:
+    return flag.joint, flag.start, flag.end, flag.kind
+
+
 def _best(flag: Flag, decisions: list[Decision]) -> Decision | None:
-    best, most = None, (0, 0.0)
+    best, most = None, (False, 0, 0.0)
     for decision in decisions:
         if not succeeds(flag, decision.flag):
             continue
         shared = overlap(flag, decision.flag)
         together = (flag.end - flag.start) + (decision.flag.end - decision.flag.start) - shared
-        fit = (shared, shared / together)
+        fit = (decision.flag.kind == flag.kind, shared, shared / together)
         if fit >= most:
             best, most = decision, fit
     return best

@@ -58,7 +58,7 @@ def report(document: Document) -> str:
         [
             _HEAD.format(title=escape(title), style=style),
             f"<header><h1>{escape(title)}</h1>",
-            f"<p class='muted'>mocapstudio {escape(__version__)} · written {utc_now()}</p></header>",
+            f"<p class='muted'>mocapstudio {escape(__version__)} · {utc_now()}</p></header>",
             *(_performer(document, p) for p in state.scene.performers if _counts(document, p)),
             _analysis(document),
             "</body>\n</html>\n",
