@@ -82,7 +82,8 @@ def _sections(reading: Reading) -> list[tuple[list[Hierarchy], MotionBlock, Arra
     sections: list[tuple[list[Hierarchy], MotionBlock, Array]] = []
     hierarchies, columns = list[Hierarchy](), 0
     while start < len(data):
-        keyword = _MOTION.search(data, start)
+        # One byte back: the keyword needs the end of a line, or a brace, before it.
+        keyword = _MOTION.search(data, max(start - 1, 0))
         if keyword is None:
             raise reading.error(len(data.rstrip()), "cut off: no MOTION after the hierarchy")
         if _BEGINS.match(data, start):
@@ -98,8 +99,19 @@ def _sections(reading: Reading) -> list[tuple[list[Hierarchy], MotionBlock, Arra
 
 
 def _next_section(data: bytes, start: int) -> int:
-    found = [data.find(word, start) for word in (b"MOTION", b"HIERARCHY")]
+    found = [_line_with(word, data, start) for word in (b"MOTION", b"HIERARCHY")]
     return min((at for at in found if at >= 0), default=len(data))
+
+
+def _line_with(word: bytes, data: bytes, start: int) -> int:
+    """Byte at which a line begins with `word`, or -1. A plain search is many times faster."""
+    at = data.find(word, start)
+    while at >= 0:
+        before = max(data.rfind(b"\n", start, at), data.rfind(b"\r", start, at))
+        if before >= 0 and not data[before:at].strip():
+            return at
+        at = data.find(word, at + 1)
+    return -1
 
 
 def _decode(reading: Reading, start: int, end: int) -> str:
