@@ -40,6 +40,8 @@ class Case:
         Takes to compare with; neither the take nor its clean version is among them.
     ignore
         (F,) frames left out of scoring, or None.
+    given
+        (F, R) truth where it comes from labels instead of a clean take, else None.
     """
 
     dirty: Take
@@ -47,6 +49,7 @@ class Case:
     truths: tuple[Truth, ...]
     context: tuple[Take, ...]
     ignore: Mask | None = field(default=None, repr=False)
+    given: Mask | None = field(default=None, repr=False)
 
     @property
     def rows(self) -> tuple[str, ...]:
@@ -55,6 +58,8 @@ class Case:
 
     def mask(self) -> Mask:
         """(F, R) truth."""
+        if self.given is not None:
+            return self.given
         return erroneous(self.clean, self.dirty, self.truths, self.rows)
 
 

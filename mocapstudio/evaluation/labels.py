@@ -1,0 +1,148 @@
+"""Cases from labels made by hand, or from a version cleaned by hand."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mocapstudio.cleaning.model import Kind
+from mocapstudio.evaluation.cases import CONTEXT_TAKES, Case, ContextSize
+from mocapstudio.evaluation.corpora import OWN, Entry, entries, read_some, read_take
+from mocapstudio.evaluation.truth import (
+    Mask,
+    Truth,
+    analysed_rows,
+    departure,
+    erroneous,
+    labelled,
+    limits,
+)
+from mocapstudio.motion.errors import FileError, MocapError
+from mocapstudio.motion.take import Take
+
+
+def read_labels(path: Path) -> dict[str, tuple[Truth, ...]]:
+    """Read labels by the stem of the take's file name; takes without errors have an empty tuple.
+
+    Either the JSON that `mocapstudio detect` writes, corrected by hand, or
+    ``{"labels": [{"take", "joint", "start", "end", "kind"}], "clean": ["take", …]}``: frames
+    0-based at the take's own rate, ends exclusive, `kind` and `clean` may be missing.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read or is neither.
+    """
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as cause:
+        raise FileError(path, f"cannot be read: {cause.strerror}") from cause
+    except UnicodeDecodeError as cause:
+        raise FileError(path, "is not UTF-8 text", offset=cause.start) from cause
+    except json.JSONDecodeError as cause:
+        raise FileError(path, f"is not JSON: {cause.msg}", line=cause.lineno) from cause
+    try:
+        return {take: tuple(truths) for take, truths in _by_take(content).items()}
+    except (MocapError, KeyError, TypeError, AttributeError) as cause:
+        raise FileError(path, f"does not hold labels of errors: {cause}") from cause
+
+
+def _by_take(content: Mapping[str, Any]) -> dict[str, list[Truth]]:
+    found: dict[str, list[Truth]] = {}
+    if "takes" in content:
+        for take in content["takes"]:
+            # A flag's `joints` are its limb; each of them has a flag of its own.
+            flags = [{**flag, "joints": [flag["joint"]]} for flag in take["flags"]]
+            found[Path(take["path"]).stem] = [Truth.from_json(flag) for flag in flags]
+        return found
+    for name in content.get("clean", []):
+        found.setdefault(Path(name).stem, [])
+    for label in content["labels"]:
+        found.setdefault(Path(label["take"]).stem, []).append(Truth.from_json(label))
+    return found
+
+
+def labelled_cases(
+    data: Sequence[Path], labels: Mapping[str, Sequence[Truth]], context: ContextSize = "large"
+) -> list[Case]:
+    """One case for each labelled take; the context are other takes of the data.
+
+    Raises
+    ------
+    MocapError
+        If a labelled take is not among the data, or a label does not fit its take.
+    """
+    everything = entries(tuple(data), OWN)
+    by_stem = {entry.path.stem: entry for entry in everything}
+    missing = sorted(set(labels) - set(by_stem))
+    if missing:
+        raise MocapError(f"labelled takes are not among the data: {', '.join(missing[:5])}")
+    made = []
+    for stem, truths in sorted(labels.items()):
+        take = by_stem[stem].read()
+        rows = analysed_rows(take.skeleton)
+        mask = labelled(take.frames, rows, truths)
+        around = _others(everything, {by_stem[stem].digest}, take, context)
+        made.append(Case(take, take, tuple(truths), around, given=mask))
+    return made
+
+
+def cleaned_case(data: Sequence[Path], cleaned: Path, context: ContextSize = "large") -> Case:
+    """Build the case of a take that has a version cleaned by hand.
+
+    The take is that of the data with the same file name, else the first with the same joints and
+    number of frames; the rest of the data is its context.
+
+    Raises
+    ------
+    MocapError
+        If no take of the data fits.
+    """
+    clean = read_take(cleaned)
+    digest = clean.source.digest if clean.source else ""
+    candidates = [e for e in entries(tuple(data), OWN) if e.digest != digest]
+    for entry in sorted(candidates, key=lambda e: e.path.stem != cleaned.stem):
+        try:
+            take = entry.read()
+        except MocapError:
+            continue
+        if take.skeleton.names == clean.skeleton.names and take.frames == clean.frames:
+            break
+    else:
+        raise MocapError(f"{cleaned}: no take of the data has its joints and number of frames")
+    around = _others(candidates, {entry.digest}, take, context)
+    rows = analysed_rows(take.skeleton)
+    return Case(take, clean, tuple(events_of(erroneous(clean, take), rows)), around)
+
+
+def events_of(mask: Mask, rows: Sequence[str]) -> list[Truth]:
+    """Every run of erroneous frames of a row, as an error of unknown kind."""
+    found = []
+    for column, row in enumerate(rows):
+        edges = np.diff(np.concatenate([[0], mask[:, column].astype(np.int8), [0]]))
+        starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
+        found += [
+            Truth(Kind.OFFSET, (row,), int(a), int(b)) for a, b in zip(starts, ends, strict=True)
+        ]
+    return sorted(found, key=lambda truth: truth.start)
+
+
+def departure_map(case: Case) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """(F, R) map of how far the take is from its clean version: 0.5 at the limit of error."""
+    scaled = departure(case.clean, case.dirty, case.rows) / limits(case.rows)
+    return np.asarray(1.0 - np.exp(-np.log(2.0) * scaled**2))
+
+
+def _others(
+    everything: Sequence[Entry], without: set[str], take: Take, context: ContextSize
+) -> tuple[Take, ...]:
+    size = CONTEXT_TAKES[context]
+    if not size:
+        return ()
+    others = [entry for entry in everything if entry.digest not in without]
+    return tuple(replace(t, trim=None) for t in read_some(others, size, like=take))
