@@ -62,8 +62,7 @@ def rate_from_frame_time(text: str) -> Fraction:
 def guess_unit(skeleton: Skeleton) -> tuple[float, str]:
     """Metres per unit of a skeleton given in units of its file, and the reason as a phrase."""
     legs = [limb.joints for limb in topology(skeleton).limbs if limb.name.endswith("leg")]
-    bones = [np.sort(np.linalg.norm(skeleton.offsets[list(leg[1:])], axis=1)) for leg in legs]
-    leg = max((float(one[-2:].sum()) for one in bones), default=0.0)
+    leg = max((_two_longest(skeleton, joints) for joints in legs), default=0.0)
     height = float(np.ptp(skeleton.rest_positions, axis=0).max())
     if leg > 0:
         length, metres, what = leg, _LEG_METRES, "legs"
@@ -77,6 +76,13 @@ def guess_unit(skeleton: Skeleton) -> tuple[float, str]:
     if not low <= unit / free <= high:
         unit = float(f"{free:.1g}")
     return unit, f"{what} of {length * unit:.2f} m"
+
+
+def _two_longest(skeleton: Skeleton, leg: tuple[int, ...]) -> float:
+    """Length of thigh and shank, of which the latter may end in a tip instead of a joint."""
+    tips = skeleton.end_offsets[np.isin(skeleton.end_parents, leg)]
+    bones = np.concatenate([skeleton.offsets[list(leg[1:])], tips])
+    return float(np.sort(np.linalg.norm(bones, axis=1))[-2:].sum())
 
 
 def guess_up(

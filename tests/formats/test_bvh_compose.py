@@ -32,8 +32,10 @@ def made(frames: int = 25, seed: int = 0, rate: Fraction = Fraction(60)) -> Take
         names=("Hips", "LeftUpLeg", "RightUpLeg", "Spine", "LeftLeg", "RightLeg", "Head"),
         parents=np.array([-1, 0, 0, 0, 1, 2, 3]),
         offsets=np.array(
-            [[0, 0.9, 0], [0.1, 0, 0], [-0.1, 0, 0], [0, 0.2, 0]]
-            + [[0, -0.42, 0], [0, -0.42, 0], [0, 0.4, 0]]
+            [
+                *([0, 0.9, 0], [0.1, 0, 0], [-0.1, 0, 0], [0, 0.2, 0]),
+                *([0, -0.42, 0], [0, -0.42, 0], [0, 0.4, 0]),
+            ]
         ),
         end_parents=np.array([4, 5]),
         end_offsets=np.array([[0, -0.4, 0], [0, -0.4, 0]]),
