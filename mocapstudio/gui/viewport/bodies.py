@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapstudio.gui.viewport.figure import Figure, Floats
+from mocapstudio.gui.viewport.figure import Figure
 from mocapstudio.gui.viewport.mesh import Mesh
+from mocapstudio.gui.viewport.solids import Floats
 from mocapstudio.gui.viewport.world import Points
 
 

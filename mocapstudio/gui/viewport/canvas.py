@@ -70,7 +70,7 @@ class Canvas(QtInteractor):
             except Exception as error:
                 # Qt would crash if it unwound through its paint; so it is raised right after.
                 QTimer.singleShot(0, partial(_raise, error))
-        super().paintGL()
+        super().paintGL()  # type: ignore[no-untyped-call]
 
     def hideEvent(self, event: QHideEvent) -> None:
         """Release OpenGL while its context still exists.
@@ -90,14 +90,14 @@ class Canvas(QtInteractor):
             self.ren_win.Finalize()
             self.ren_win.SetReadyForRendering(False)
             self._ctx.doneCurrent()
-            self._forget_context()
+            self._forget_context()  # type: ignore[no-untyped-call]
 
     def showEvent(self, event: QShowEvent) -> None:
         """Begin again in the widget's context after `hideEvent`."""
         super().showEvent(event)
         if self._ctx is None and self.context() is not None and self.ren_win is not None:
             self.makeCurrent()
-            self.initializeGL()
+            self.initializeGL()  # type: ignore[no-untyped-call]
             self.doneCurrent()
 
     def closeEvent(self, event: QCloseEvent) -> None:

@@ -10,7 +10,9 @@ import numpy as np
 
 from mocapstudio.cleaning.model import Proposal
 from mocapstudio.cleaning.proposals import apply
-from mocapstudio.gui.viewport.figure import COARSE, FINE, Detail, Figure, build_figure
+from mocapstudio.gui.viewport.figure import Figure
+from mocapstudio.gui.viewport.shaping import build_figure
+from mocapstudio.gui.viewport.solids import COARSE, FINE, Detail
 from mocapstudio.gui.viewport.world import WorldMotion, WorldMotions
 from mocapstudio.motion.skeleton import Skeleton
 from mocapstudio.motion.take import Take

@@ -6,13 +6,12 @@ which costs less than lines of several pixels' width do in software.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapstudio.gui.viewport.figure import Figure, Floats
+from mocapstudio.gui.viewport.figure import Figure
 from mocapstudio.gui.viewport.mesh import Mesh
+from mocapstudio.gui.viewport.solids import Floats
 from mocapstudio.gui.viewport.world import Points
 
 Colour = tuple[int, int, int]
@@ -58,16 +57,13 @@ class Marks:
         self._add(discs.reshape(-1, 3), _fans(len(figure.balls), _DISC), tone)
 
     def arrow(self, at: Points, heading: float, size: float, level: float, colour: Colour) -> None:
-        """Draw a chevron on the floor in front of the hips, pointing where they face."""
+        """Draw a triangle on the floor in front of the hips, pointing where they face."""
         ahead = np.array([np.sin(heading), 0.0, np.cos(heading)])
         left = np.array([np.cos(heading), 0.0, -np.sin(heading)])
         base = np.array([at[0], level, at[2]]) + 0.24 * size * ahead
-        wing, tip, notch = 0.045 * size, 0.075 * size, 0.028 * size
-        corners = np.stack(
-            [base + tip * ahead, base + wing * left, base + notch * ahead, base - wing * left]
-        )
-        cells = np.array([[0, 1, 2], [0, 2, 3]])
-        self._add(corners, cells, np.array(colour, np.uint8))
+        wing, tip = 0.034 * size, 0.07 * size
+        corners = np.stack([base + tip * ahead, base + wing * left, base - wing * left])
+        self._add(corners, np.array([[0, 1, 2]]), np.array(colour, np.uint8))
 
     def ring(
         self, at: Points, radius: float, width: float, axes: NDArray[np.float64], colour: Colour
@@ -89,7 +85,7 @@ class Marks:
     def trail(
         self,
         path: Points,
-        width: NDArray[np.float64],
+        width: NDArray[np.floating],
         eye: NDArray[np.float64],
         colours: NDArray[np.uint8],
     ) -> None:
@@ -112,7 +108,7 @@ class Marks:
 
     def show(self) -> None:
         """Put what was collected into the mesh and begin anew."""
-        shape = tuple(len(one) for one in (*self._corners, *self._cells))
+        shape = tuple([len(one) for one in self._corners] + [len(one) for one in self._cells])
         # Marks of the same kinds have the same triangles: then only corners and colours move.
         if shape != self._shape:
             self._shape = shape
@@ -133,8 +129,9 @@ def _fans(count: int, corners: int) -> NDArray[np.int64]:
     return (fan + corners * np.arange(count)[:, None, None]).reshape(-1, 3)
 
 
-def fading(colour: Colour, towards: Colour, shares: Sequence[float]) -> NDArray[np.uint8]:
+def fading(colour: Colour, towards: Colour, shares: NDArray[np.floating]) -> NDArray[np.uint8]:
     """(N, 3): from `colour` (share 0) `towards` another (share 1)."""
-    share = np.asarray(shares, dtype=float)[:, None]
+    share = shares[:, None]
     mixed = np.array(colour) * (1 - share) + np.array(towards) * share
-    return np.round(mixed).astype(np.uint8)
+    rounded: NDArray[np.uint8] = np.round(mixed).astype(np.uint8)
+    return rounded

@@ -89,4 +89,5 @@ def tint(colours: Palette, values: NDArray[np.floating], threshold: float) -> ND
     loud = np.stack([packed >> 16 & 255, packed >> 8 & 255, packed & 255], axis=-1)
     share = np.clip((known / max(threshold, 1e-6) - _QUIET) / (1 - _QUIET), 0, 1)[:, None] ** 2
     calm = np.where(np.isnan(values)[:, None], colours.unmapped, colours.body)
-    return np.round(calm * (1 - share) + loud * share).astype(np.uint8)
+    mixed: NDArray[np.uint8] = np.round(calm * (1 - share) + loud * share).astype(np.uint8)
+    return mixed

@@ -14,8 +14,9 @@ from mocapstudio.gui.viewport import floor, marks
 from mocapstudio.gui.viewport.bodies import Bodies
 from mocapstudio.gui.viewport.camera import VIEW_ANGLE, Turntable
 from mocapstudio.gui.viewport.cast import Part, Role
-from mocapstudio.gui.viewport.figure import Floats, stature
 from mocapstudio.gui.viewport.palette import Colour, Palette, mix, tint
+from mocapstudio.gui.viewport.shaping import stature
+from mocapstudio.gui.viewport.solids import Floats
 from mocapstudio.gui.viewport.world import Points, WorldMotion
 from mocapstudio.motion.kinematics import end_positions, take_pose
 from mocapstudio.motion.topology import topology
@@ -195,7 +196,7 @@ class Scene3D:
             width = max(0.0028 * self.stature, 1.8 * look.pixel)
             self._marks.ring(points[joint], radius, width, axes, self._palette.accent)
 
-    def _trail(self, motion: WorldMotion, joint: int, frame: int, eye: Points) -> None:
+    def _trail(self, motion: WorldMotion, joint: int, frame: int, eye: NDArray[np.float64]) -> None:
         assert self._palette is not None
         step = _TRAIL * float(motion.take.rate) / _TRAIL_STEPS
         steps = np.arange(-_TRAIL_STEPS, _TRAIL_STEPS + 1)
@@ -237,4 +238,5 @@ def _moved_by(role: Role) -> NDArray[np.bool_]:
     skeleton = role.motion.take.skeleton
     turned = np.array([name in role.turned for name in skeleton.names])
     parents = np.concatenate([skeleton.parents, skeleton.end_parents])
-    return (parents >= 0) & turned[parents]
+    moved: NDArray[np.bool_] = (parents >= 0) & turned[parents]
+    return moved

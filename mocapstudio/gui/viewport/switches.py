@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 from PySide6.QtCore import QObject, Qt
 from PySide6.QtGui import QAction, QKeySequence
@@ -47,8 +48,7 @@ class Switches(QObject):
         super().__init__(owner)
         self._icons: dict[QAction, str] = {}
         self.views = tuple(
-            self._make(f"view-{name}", tip, key, lambda name=name: look(name))
-            for name, key, tip in _VIEWS
+            self._make(f"view-{name}", tip, key, partial(look, name)) for name, key, tip in _VIEWS
         )
         # These have keys of their own in the desk's menus.
         self.frame = self._make("frame", "Frame the selected joint, or the body (F)", "", frame)

@@ -42,7 +42,8 @@ class WorldMotion:
     def points(self, frame: int) -> Points:
         """(J + E, 3) metres at a frame of the take, in the world."""
         block, at = divmod(frame, _BLOCK)
-        return self._block(block)[0][at]
+        points: Points = self._block(block)[0][at]
+        return points
 
     def heading(self, frame: int) -> float:
         """Radians about +Y that the hips face at a frame; 0 faces +Z."""
