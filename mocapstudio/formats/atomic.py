@@ -28,7 +28,11 @@ def write_whole(path: Path | str, pieces: Iterable[bytes], *, inputs: Iterable[P
         If `path` is one of the inputs or cannot be written; nothing is left behind then.
     """
     path = Path(path)
-    target = path.resolve()
+    try:
+        target = path.resolve()
+    except (OSError, ValueError, RuntimeError) as bad:
+        # A null byte in the name, or links in a circle.
+        raise FileError(path, f"cannot be written: {bad}") from bad
     if any(_same(target, one) for one in inputs):
         raise FileError(path, "is an input of this export and is not overwritten")
     # Hidden and without a known suffix, so that no folder listing takes it for a take.

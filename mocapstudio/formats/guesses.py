@@ -55,6 +55,9 @@ def rate_from_frame_time(text: str) -> Fraction:
     near += [r for r in _RATES if 1 / r // ulp * ulp == exact]
     if near and abs(near[0] * exact - 1) < Fraction(1, 20):
         return near[0]
+    whole = round(1 / exact)
+    if whole and round(Fraction(1, whole) / ulp) * ulp == exact:
+        return Fraction(whole)
     close = [r for r in _RATES if abs(r * exact - 1) < Fraction(1, 20_000)]
     return close[0] if close else (1 / exact).limit_denominator(1001)
 

@@ -67,8 +67,9 @@ def read(path: Path | str, options: ReadOptions | None = None) -> tuple[list[Tak
     path = Path(path)
     try:
         data = path.read_bytes()
-    except OSError as bad:
-        raise FileError(path, (bad.strerror or str(bad)).lower()) from bad
+    except (OSError, ValueError) as bad:
+        # A ValueError is a null byte in the name.
+        raise FileError(path, (getattr(bad, "strerror", None) or str(bad)).lower()) from bad
     return _format_of(path, data[:_SNIFFED]).read(path, data, options or ReadOptions())
 
 

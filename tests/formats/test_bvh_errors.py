@@ -183,7 +183,11 @@ def test_a_hierarchy_without_channels(refused) -> None:
 
 
 def test_files_that_cannot_be_opened(tmp_path: Path) -> None:
-    for path, cause in ((tmp_path / "absent.bvh", "no such file"), (tmp_path, "directory")):
+    for path, cause in (
+        (tmp_path / "absent.bvh", "no such file"),
+        (tmp_path, "directory"),
+        (tmp_path / "nul\0.bvh", "null byte"),
+    ):
         with pytest.raises(FileError) as caught:
             formats.read(path)
         assert cause in caught.value.cause

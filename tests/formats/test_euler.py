@@ -4,7 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
@@ -35,6 +35,7 @@ def test_angles_stay_what_they_were_next_to_themselves(order: str, angles) -> No
     np.testing.assert_allclose(found, [angles], atol=1e-6)
 
 
+@settings(max_examples=50, deadline=None)
 @given(order=st.sampled_from(ORDERS), angles=TRIPLES, previous=TRIPLES)
 def test_no_equivalent_is_nearer(order: str, angles, previous) -> None:
     q = quaternions(order, np.array([angles]))

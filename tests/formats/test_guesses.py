@@ -1,0 +1,141 @@
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mocapstudio.formats.guesses import guess_unit, rate_from_frame_time, synthetic_start
+from mocapstudio.motion import rotations as rot
+from mocapstudio.motion.skeleton import Skeleton
+
+NTSC = {n: Fraction(n * 1000, 1001) for n in (30, 60, 120, 240)}
+
+
+@pytest.mark.parametrize(
+    ("written", "rate"),
+    [
+        ("0.0083333", 120),
+        (".0083333", 120),
+        ("0.008333", 120),
+        ("0.00833", 120),
+        ("0.0083", 120),
+        ("0.00833333333333", 120),
+        ("8.33333e-3", 120),
+        ("0.008342", NTSC[120]),
+        ("0.00834167", NTSC[120]),
+        ("0.0333333", 30),
+        ("0.033333", 30),
+        ("0.0333", 30),
+        ("0.033", 30),
+        ("0.0333667", NTSC[30]),
+        ("0.033367", NTSC[30]),
+        ("0.03336", NTSC[30]),
+        ("0.0416667", 24),
+        ("0.041667", 24),
+        ("0.041708", Fraction(24_000, 1001)),
+        ("0.016667", 60),
+        ("0.0167", 60),
+        ("0.0166", 60),
+        ("0.016683", NTSC[60]),
+        ("0.0041667", 240),
+        ("0.01", 100),
+        ("0.010000", 100),
+        ("1e-2", 100),
+        ("0.04", 25),
+        ("0.02", 50),
+        ("0.008", 125),
+        ("0.005", 200),
+        ("0.001", 1000),
+        ("0.0066667", 150),
+        ("0.011111", 90),
+        ("0.027027", 37),
+        ("0.5", 2),
+        ("1", 1),
+    ],
+)
+def test_rates(written: str, rate) -> None:
+    assert rate_from_frame_time(written) == rate
+
+
+@given(rate=st.integers(2, 500), decimals=st.integers(7, 12))
+def test_whole_rates_survive_any_rounding(rate: int, decimals: int) -> None:
+    assert rate_from_frame_time(f"{1 / rate:.{decimals}f}") == rate
+
+
+@given(st.floats(1e-5, 2.0).map(lambda x: f"{x:.9f}"))
+def test_the_rate_is_that_of_the_text(written: str) -> None:
+    rate = rate_from_frame_time(written)
+    assert abs(float(rate) * float(written) - 1) < 1e-3 or float(written) < 1e-4
+
+
+def person(scale: float) -> Skeleton:
+    """Hips, two legs of 0.43 + 0.41 m, a spine and a head, in units of 1/scale metres."""
+    offsets = [
+        *([0, 0, 0], [0.09, 0, 0], [0, -0.43, 0], [0, -0.41, 0]),
+        *([-0.09, 0, 0], [0, -0.43, 0], [0, -0.41, 0], [0, 0.5, 0], [0, 0.2, 0]),
+    ]
+    names = ("Hips", "LeftUpLeg", "LeftLeg", "LeftFoot", "RightUpLeg", "RightLeg", "RightFoot")
+    return Skeleton(
+        (*names, "Spine", "Head"),
+        np.array([-1, 0, 1, 2, 0, 4, 5, 0, 7]),
+        np.array(offsets) * scale,
+        np.zeros(0, dtype=np.int64),
+        np.zeros((0, 3)),
+    )
+
+
+@pytest.mark.parametrize("unit", [1.0, 0.01, 0.001, 0.0254, 0.0254 / 0.45])
+@pytest.mark.parametrize("size", [0.79, 1.0, 1.12])
+def test_usual_units_are_told_from_the_legs(unit: float, size: float) -> None:
+    assert guess_unit(person(size / unit))[0] == unit
+
+
+def test_an_unusual_unit_is_estimated() -> None:
+    assert guess_unit(person(1 / 0.04))[0] == pytest.approx(0.04)
+    assert guess_unit(person(1 / 0.1))[0] == pytest.approx(0.1)
+    assert guess_unit(person(1 / 7.0))[0] == pytest.approx(7.0)
+
+
+def test_a_skeleton_without_lengths_has_some_unit() -> None:
+    unit, why = guess_unit(person(0.0))
+    assert unit == 0.01
+    assert "no bone" in why
+
+
+def dance(frames: int = 200, joints: int = 12) -> np.ndarray:
+    time = np.arange(frames)[:, None, None] / 120
+    phase = np.random.default_rng(2).uniform(0, 6, (1, joints, 3))
+    return rot.from_rotation_vector(0.5 + 0.4 * np.sin(2 * time + phase))
+
+
+def test_a_t_pose_before_the_motion() -> None:
+    motion = dance()
+    assert synthetic_start(motion) == 0
+    for rows in (1, 2, 3):
+        started = motion.copy()
+        started[:rows] = rot.IDENTITY
+        started[:rows, :3] = rot.from_rotation_vector(np.array([0.0, 0.4, 0.0]))
+        assert synthetic_start(started) == rows
+
+
+def test_a_performer_who_leaves_a_t_pose_is_no_synthetic_row() -> None:
+    motion = dance()
+    slowly = np.clip(np.arange(200) / 100, 0, 1)[:, None]
+    leaving = rot.slerp(
+        np.broadcast_to(rot.IDENTITY, motion.shape), motion, slowly + 0 * motion[..., 0]
+    )
+    assert synthetic_start(leaving) == 0
+
+
+def test_a_pop_in_the_second_frame_is_no_t_pose() -> None:
+    motion = dance()
+    motion[0] = rot.multiply(motion[0], rot.from_rotation_vector(np.array([0.6, 0.2, 0.1])))
+    assert synthetic_start(motion) == 0
+
+
+def test_short_and_still_takes_have_no_t_pose() -> None:
+    assert synthetic_start(dance(frames=3)) == 0
+    assert synthetic_start(np.tile(rot.IDENTITY, (50, 5, 1))) == 0
