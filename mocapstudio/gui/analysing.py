@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Generator, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 
-from mocapstudio.cleaning.analysis import Analysis
 from mocapstudio.cleaning.parameters import DetectionParameters
 from mocapstudio.gui.document import DocumentBridge
 from mocapstudio.gui.jobs import Job, Jobs
@@ -17,6 +17,9 @@ from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.recording import without_itself
 from mocapstudio.motion.take import Take
 from mocapstudio.review.state import DocumentState
+
+if TYPE_CHECKING:
+    from mocapstudio.cleaning.analysis import Analysis
 
 _KEY = "analysis"
 

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterable, Sequence
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from PySide6.QtCore import QObject, Signal
 
-from mocapstudio.cleaning.analysis import Analysis
 from mocapstudio.cleaning.model import Flag, Proposal
 from mocapstudio.gui.document import DocumentBridge
 from mocapstudio.gui.jobs import Jobs
@@ -15,6 +14,9 @@ from mocapstudio.gui.messages import Messages
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.progress import Progress
 from mocapstudio.review.model import Verdict
+
+if TYPE_CHECKING:
+    from mocapstudio.cleaning.analysis import Analysis
 
 _AT_ONCE = 3
 """So many missing proposals are made while the user waits; more go into the background."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QObject, Signal
@@ -47,6 +47,15 @@ class UiState:
     trails: bool = True
     analysing: bool = False
     theme: str = "dark"
+
+
+def only_frame_differs(old: DocumentState, new: DocumentState) -> bool:
+    """Tell whether two states differ in the current frame at most, as while playing."""
+    return all(
+        getattr(old, one.name) is getattr(new, one.name)
+        for one in fields(new)
+        if one.name != "frame"
+    )
 
 
 class DocumentBridge(QObject):

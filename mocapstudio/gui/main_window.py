@@ -14,7 +14,7 @@ from mocapstudio.gui.actions import Actions
 from mocapstudio.gui.analysing import Analysing
 from mocapstudio.gui.deciding import Deciding
 from mocapstudio.gui.dialogs.trouble import TroubleDialog
-from mocapstudio.gui.document import DocumentBridge, UiState
+from mocapstudio.gui.document import DocumentBridge, UiState, only_frame_differs
 from mocapstudio.gui.files_desk import FilesDesk
 from mocapstudio.gui.jobs import Jobs
 from mocapstudio.gui.journalling import Journalling
@@ -120,6 +120,8 @@ class MainWindow(QMainWindow):
         self.bridge.set_ui(theme=theme.current().name)
 
     def _follow(self, old: DocumentState, new: DocumentState) -> None:
+        if old is not new and only_frame_differs(old, new):
+            return
         self.actions_.follow_state(new)
         page = self.workspace if new.scene.performers else self.welcome
         if self._pages.currentWidget() is not page:

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
-from mocapstudio.cleaning.analysis import Analysis
 from mocapstudio.cleaning.model import Flag, Neighbour, Proposal
 from mocapstudio.gui.document import DocumentBridge, UiState
 from mocapstudio.gui.jobs import Jobs
 from mocapstudio.gui.trouble import Trouble, understand
 from mocapstudio.motion.progress import Progress
 from mocapstudio.review.state import DocumentState
+
+if TYPE_CHECKING:
+    from mocapstudio.cleaning.analysis import Analysis
 
 _KEY = "reasons"
 

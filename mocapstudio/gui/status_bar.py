@@ -9,7 +9,7 @@ from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QLabel, QPushButton, QStatusBar
 
 from mocapstudio.gui import wording
-from mocapstudio.gui.document import DocumentBridge
+from mocapstudio.gui.document import DocumentBridge, only_frame_differs
 from mocapstudio.gui.messages import Messages
 from mocapstudio.gui.widgets.parts import ElidedLabel, label
 from mocapstudio.review.state import DocumentState
@@ -51,7 +51,7 @@ class DeskStatusBar(QStatusBar):
         self._timer.setSingleShot(True)
         self._timer.timeout.connect(lambda: self._tell("", None))
         messages.told.connect(self._tell)
-        bridge.changed.connect(lambda old, new: self._show(new))
+        bridge.changed.connect(self._follow)
         self._show(bridge.state)
 
     def _tell(self, text: str, file: Path | None) -> None:
@@ -64,6 +64,10 @@ class DeskStatusBar(QStatusBar):
     def _show_folder(self) -> None:
         if self._file is not None:
             QDesktopServices.openUrl(QUrl.fromLocalFile(str(self._file.parent)))
+
+    def _follow(self, old: DocumentState, new: DocumentState) -> None:
+        if not only_frame_differs(old, new):
+            self._show(new)
 
     def _show(self, state: DocumentState) -> None:
         take = state.take

@@ -42,7 +42,11 @@ class ShortcutsDialog(QDialog):
             row.addLayout(stack)
         column.addLayout(row)
         column.addWidget(
-            label("In the viewport: Alt-drag turns the camera, the wheel zooms.", "muted")
+            label(
+                "Viewport: drag turns, Shift-drag pans, the wheel zooms, a click selects a joint.\n"
+                "Map: a click goes there, Shift-drag selects joints and span, the wheel zooms.",
+                "muted",
+            )
         )
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
         buttons.rejected.connect(self.reject)

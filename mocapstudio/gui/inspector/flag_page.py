@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
 from mocapstudio.cleaning.model import Neighbour
 from mocapstudio.gui import icons, theme, wording
 from mocapstudio.gui.actions import Actions
-from mocapstudio.gui.document import DocumentBridge
+from mocapstudio.gui.document import DocumentBridge, UiState, only_frame_differs
 from mocapstudio.gui.inspector.neighbours import NeighbourList
 from mocapstudio.gui.queue.model import VERDICT_ICONS
 from mocapstudio.gui.reasons import Reason, Reasons
@@ -25,9 +25,8 @@ from mocapstudio.gui.widgets.parts import ElidedLabel, Hint, label, panel
 from mocapstudio.review.model import QueueItem, Verdict
 from mocapstudio.review.state import DocumentState
 
-_FACTS = ("span", "peak", "score", "method", "moves")
+_FACTS = ("peak", "score", "method", "moves")
 _TITLES = {
-    "span": ("Span", "Start and end in the take, and the file's frame numbers"),
     "peak": ("Peak", "Highest value of the digression map in the span, 0 to 1, and where"),
     "score": ("Score", "How surely it is an error, 0 to 1, comparable between takes"),
     "method": ("Proposal", "How the replacement motion was made, and from which neighbour"),
@@ -56,6 +55,8 @@ class FlagPage(QWidget):
         self._joint.setObjectName("inspector-joint")
         self._joint.setProperty("role", "heading")
         self._verdict_icon, self._verdict = QLabel(), label("", "", "inspector-verdict")
+        self._span = label("", "muted", "inspector-span", wrap=True)
+        self._span.setToolTip("Kind; start and end in the take; the file's frame numbers")
         self._why = label("", "", "inspector-why", wrap=True)
         self._why.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self._facts = {name: label("", "", f"inspector-{name}", wrap=True) for name in _FACTS}
@@ -69,8 +70,8 @@ class FlagPage(QWidget):
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self._stack)
-        bridge.changed.connect(lambda old, new: self._show(new))
-        bridge.ui_changed.connect(lambda old, new: self._show(bridge.state))
+        bridge.changed.connect(self._follow)
+        bridge.ui_changed.connect(self._follow_ui)
         reasons.changed.connect(lambda: self._show(bridge.state))
         self._show(bridge.state)
 
@@ -78,13 +79,14 @@ class FlagPage(QWidget):
         body = QWidget()
         column = QVBoxLayout(body)
         column.setContentsMargins(12, 10, 12, 10)
-        column.setSpacing(8)
+        column.setSpacing(7)
         top = QHBoxLayout()
         top.setSpacing(5)
         top.addWidget(self._joint, 1)
         top.addWidget(self._verdict_icon)
         top.addWidget(self._verdict)
         column.addLayout(top)
+        column.addWidget(self._span)
         column.addWidget(self._why)
         column.addWidget(label("NEIGHBOURS", "section"))
         column.addWidget(self._neighbours)
@@ -119,6 +121,14 @@ class FlagPage(QWidget):
             grid.addWidget(self._facts[name], row, 1)
         return grid
 
+    def _follow(self, old: DocumentState, new: DocumentState) -> None:
+        if not only_frame_differs(old, new):
+            self._show(new)
+
+    def _follow_ui(self, old: UiState, new: UiState) -> None:
+        if (old.preview, old.theme) != (new.preview, new.theme):
+            self._show(self._bridge.state)
+
     def _show(self, state: DocumentState) -> None:
         item, take = state.selected, state.take
         self._stack.setCurrentIndex(0 if item is None else 1)
@@ -131,7 +141,7 @@ class FlagPage(QWidget):
 
     def _show_verdict(self, item: QueueItem) -> None:
         colour = theme.current().verdict(item.verdict)
-        self._joint.show_text(f"{item.flag.joint} · {item.flag.kind}")
+        self._joint.show_text(item.flag.joint)
         self._verdict_icon.setPixmap(icons.pixmap(VERDICT_ICONS[item.verdict], 16, colour))
         self._verdict.setText(item.verdict.capitalize())
         self._verdict.setStyleSheet(f"color: {colour}; font-weight: 600;")
@@ -139,6 +149,8 @@ class FlagPage(QWidget):
     def _show_reason(self, state: DocumentState, item: QueueItem) -> None:
         take, analysis = state.take, state.analysis
         assert take is not None
+        span = wording.span(take, item.flag.start, item.flag.end)
+        self._span.setText(f"{item.flag.kind.capitalize()}, {span}")
         reason = self._reasons.current
         if analysis is None:
             self._why.setText("Flagged in an earlier analysis. Press F5 to analyse again.")
@@ -162,7 +174,7 @@ class FlagPage(QWidget):
             return ""
         takes = (analysis.take, *analysis.context)
         take = takes[neighbour.index]
-        return f"{take.seconds(neighbour.start):.2f}–{take.seconds(neighbour.end):.2f} s"
+        return f"{take.seconds(neighbour.start):.2f} s"
 
     def _show_facts(self, state: DocumentState, item: QueueItem) -> None:
         take, flag = state.take, item.flag
@@ -179,7 +191,6 @@ class FlagPage(QWidget):
         elif self._reasons.current.trouble is not None:
             method = self._reasons.current.trouble.cause
         texts = {
-            "span": wording.span(take, flag.start, flag.end),
             "peak": peak,
             "score": f"{flag.score:.2f}",
             "method": method,
@@ -223,9 +234,10 @@ def _decisions(actions: Actions) -> QFrame:
         button.setProperty("verdict", str(verdict))
         button.setMinimumHeight(32)
         grid.addWidget(button, 0, 2 * column, 1, 2)
-    others = (("reject-like", "Reject like this"), ("reopen", "Reopen"))
-    for column, (name, text) in enumerate(others):
-        grid.addWidget(actions.push_button(name, text), 1, 3 * column, 1, 3)
-    for column, (name, text) in enumerate((("protect", "Protect"), ("edit", "Edit repair"))):
-        grid.addWidget(actions.push_button(name, text), 2, 3 * column, 1, 3)
+    below = QHBoxLayout()
+    below.setSpacing(6)
+    below.addWidget(actions.push_button("reject-like", "Reject like this"), 1)
+    for name in ("protect", "reopen", "edit"):
+        below.addWidget(actions.tool_button(name))
+    grid.addLayout(below, 1, 0, 1, 6)
     return foot

@@ -12,7 +12,7 @@ from mocapstudio.cleaning.model import Neighbour
 from mocapstudio.gui import theme
 from mocapstudio.gui.widgets.parts import label
 
-_HEIGHT = 32
+_HEIGHT = 28
 
 
 class NeighbourButton(QAbstractButton):

@@ -67,8 +67,8 @@ class FilterBar(QWidget):
 
     def offer(self, kinds: Sequence[str], limbs: Sequence[str]) -> None:
         """Offer the kinds and limbs that occur; what was chosen stays chosen."""
-        _fill(self._kind, "All kinds", kinds)
-        _fill(self._limb, "All limbs", limbs)
+        _fill(self._kind, "Kinds", kinds)
+        _fill(self._limb, "Limbs", limbs)
 
     def clear(self) -> None:
         """Let everything pass."""
@@ -79,7 +79,7 @@ class FilterBar(QWidget):
     def recolour(self) -> None:
         """Draw the verdicts in the colours of the theme in force."""
         if not self._verdict.count():
-            self._verdict.addItem("All verdicts", None)
+            self._verdict.addItem("Verdicts", None)
             for verdict in Verdict:
                 self._verdict.addItem(verdict.capitalize(), verdict)
         for row, verdict in enumerate(Verdict, start=1):

@@ -6,13 +6,15 @@ from collections import Counter
 from collections.abc import Iterable
 
 from PySide6.QtCore import QItemSelectionModel, QModelIndex, Qt
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QAbstractItemView, QFrame, QHeaderView, QTableView, QVBoxLayout
 
-from mocapstudio.gui import settings, theme
-from mocapstudio.gui.document import DocumentBridge, UiState
+from mocapstudio.gui import theme
+from mocapstudio.gui.document import DocumentBridge, UiState, only_frame_differs
 from mocapstudio.gui.queue.delegate import QueueDelegate
 from mocapstudio.gui.queue.filter_bar import FilterBar
 from mocapstudio.gui.queue.model import Column, QueueFilter, QueueModel
+from mocapstudio.gui.queue.take_chooser import TakeChooser
 from mocapstudio.gui.widgets.parts import Hint, header, label
 from mocapstudio.motion.facing import ROOT_HEADING, ROOT_POSITION
 from mocapstudio.motion.take import Take
@@ -21,13 +23,16 @@ from mocapstudio.review.model import QueueItem, Verdict
 from mocapstudio.review.state import DocumentState
 
 _WIDTHS = {
-    Column.RANK: 30,
-    Column.TIME: 62,
-    Column.FRAME: 52,
-    Column.SCORE: 50,
-    Column.KIND: 72,
-    Column.VERDICT: 88,
+    Column.RANK: 36,
+    Column.TIME: 58,
+    Column.FRAME: 46,
+    Column.SCORE: 46,
+    Column.KIND: 84,
+    Column.VERDICT: 94,
 }
+_JOINT_WIDTH = 90
+_DISPENSABLE = (Column.FRAME, Column.KIND)
+"""Left out where the queue is too narrow for all columns, the first one first."""
 
 
 class _Table(QTableView):
@@ -50,7 +55,7 @@ class QueueView(QFrame):
         super().__init__()
         self.setObjectName("queue")
         self.setProperty("role", "panel")
-        self.setMinimumWidth(250)
+        self.setMinimumWidth(300)
         self._bridge = bridge
         self._take: Take | None = None
         self._limbs: dict[str, str] = {}
@@ -64,7 +69,7 @@ class QueueView(QFrame):
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
-        column.addWidget(header("Queue", self._count))
+        column.addWidget(header("Queue", self._count, TakeChooser(bridge)))
         column.addWidget(self._filters)
         column.addWidget(self._table, 1)
         self._filters.changed.connect(self._filter_again)
@@ -105,6 +110,14 @@ class QueueView(QFrame):
                 return one
         return None
 
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Leave out columns that there is no room for."""
+        super().resizeEvent(event)
+        left = event.size().width() - _JOINT_WIDTH - sum(_WIDTHS.values())
+        for column in _DISPENSABLE:
+            self._table.setColumnHidden(column, left < 0)
+            left += _WIDTHS[column] if left < 0 else 0
+
     def select_all(self) -> None:
         """Select every row that is shown."""
         self._table.selectAll()
@@ -126,8 +139,10 @@ class QueueView(QFrame):
             self._filters.offer(sorted({str(i.flag.kind) for i in new.queue}), limbs)
             self._shown.set_filter(self._filters.filter, self._limbs)
             self._count.setText(_summary(new.queue))
-        self._select(new.selection.flag)
-        self._show_hint()
+        if old is None or old.selection != new.selection or old.queue is not new.queue:
+            self._select(new.selection.flag)
+        if old is None or not only_frame_differs(old, new):
+            self._show_hint()
 
     def _show_ui(self, old: UiState, new: UiState) -> None:
         if old.theme != new.theme:
@@ -208,20 +223,13 @@ class QueueView(QFrame):
         head.setObjectName("queue-header")
         head.setHighlightSections(False)
         head.setMinimumSectionSize(24)
-        head.setSectionResizeMode(QHeaderView.ResizeMode.Interactive)
+        head.setSectionResizeMode(QHeaderView.ResizeMode.Fixed)
         head.setSectionResizeMode(Column.JOINT, QHeaderView.ResizeMode.Stretch)
         for column, width in _WIDTHS.items():
             table.setColumnWidth(column, width)
         table.setSortingEnabled(True)
         table.sortByColumn(Column.RANK, Qt.SortOrder.AscendingOrder)
-        remembered = settings.layout("queue-header")
-        if remembered is not None:
-            head.restoreState(remembered)
         return table
-
-    def remember(self) -> None:
-        """Remember the widths and the order of the columns."""
-        settings.set_layout("queue-header", self._table.horizontalHeader().saveState())
 
 
 def _limb_names(take: Take) -> dict[str, str]:
@@ -234,5 +242,4 @@ def _summary(queue: tuple[QueueItem, ...]) -> str:
     if not queue:
         return ""
     counts = Counter(item.verdict for item in queue)
-    parts = [f"{counts[verdict]} {verdict}" for verdict in Verdict if counts[verdict]]
-    return " · ".join(parts)
+    return f"{counts[Verdict.OPEN]} of {len(queue)} open"

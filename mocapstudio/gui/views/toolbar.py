@@ -7,7 +7,7 @@ from PySide6.QtWidgets import QComboBox, QLabel, QSlider, QToolBar
 
 from mocapstudio.cleaning.parameters import CALIBRATED, PAPER, schema
 from mocapstudio.gui.actions import Actions
-from mocapstudio.gui.document import DocumentBridge
+from mocapstudio.gui.document import DocumentBridge, only_frame_differs
 from mocapstudio.gui.jobs import Jobs
 from mocapstudio.gui.widgets.job_strip import JobStrip
 from mocapstudio.gui.widgets.parts import label
@@ -57,7 +57,7 @@ class DeskToolBar(QToolBar):
         self.addWidget(actions.tool_button("redo"))
         self.addSeparator()
         self.addWidget(actions.tool_button("export", text="Export"))
-        bridge.changed.connect(lambda old, new: self._show(new))
+        bridge.changed.connect(self._follow)
         self._show(bridge.state)
 
     def _make_mode(self) -> QComboBox:
@@ -100,6 +100,10 @@ class DeskToolBar(QToolBar):
             self._bridge.document.set_threshold(threshold)
         except MocapError as error:
             self._value.setToolTip(str(error))
+
+    def _follow(self, old: DocumentState, new: DocumentState) -> None:
+        if not only_frame_differs(old, new):
+            self._show(new)
 
     def _show(self, state: DocumentState) -> None:
         self._value.setText(f"{state.threshold:.2f}")

@@ -1,4 +1,4 @@
-"""The transport: play, step, frame and time, speed, loop; which take is under review."""
+"""The transport: play, step, frame and time, speed, loop."""
 
 from __future__ import annotations
 
@@ -6,22 +6,19 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import (
     QButtonGroup,
-    QComboBox,
     QFrame,
     QHBoxLayout,
-    QSizePolicy,
     QSpinBox,
     QToolButton,
     QWidget,
 )
 
-from mocapstudio.gui import icons, wording
+from mocapstudio.gui import wording
 from mocapstudio.gui.actions import Actions
 from mocapstudio.gui.document import DocumentBridge, UiState
 from mocapstudio.gui.playback import SPEEDS
 from mocapstudio.gui.widgets.parts import label
 from mocapstudio.motion.take import Take
-from mocapstudio.review.model import Scene
 from mocapstudio.review.state import DocumentState
 
 _FRACTIONS = {0.25: "¼×", 0.5: "½×", 1.0: "1×"}
@@ -91,17 +88,16 @@ class TransportView(QFrame):
         self._time.setMinimumWidth(64)
         self._time.setToolTip("Time since the take's first frame, seconds")
         self._length = label("", "muted", "length")
-        self._take = self._make_take_chooser()
-        self._scene: Scene | None = None
         self._speeds = QButtonGroup(self)
         row = QHBoxLayout(self)
         row.setContentsMargins(10, 4, 10, 4)
         row.setSpacing(3)
-        row.addWidget(self._take)
         row.addStretch(1)
         for name in ("first", "frame-back", "play", "frame-on", "last"):
             row.addWidget(actions.tool_button(name))
         row.addSpacing(8)
+        row.addWidget(label("Frame", "muted"))
+        row.addSpacing(3)
         row.addWidget(self._frame)
         row.addSpacing(4)
         row.addWidget(self._time)
@@ -121,17 +117,6 @@ class TransportView(QFrame):
         at = SPEEDS.index(self._bridge.ui.speed) + by
         self._bridge.set_ui(speed=SPEEDS[min(max(at, 0), len(SPEEDS) - 1)])
 
-    def _make_take_chooser(self) -> QComboBox:
-        combo = QComboBox()
-        combo.setObjectName("active-take")
-        combo.setToolTip("The take under review")
-        combo.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        combo.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-        combo.setMinimumWidth(90)
-        combo.setMaximumWidth(190)
-        combo.activated.connect(lambda row: self._bridge.document.set_active(combo.itemData(row)))
-        return combo
-
     def _make_speed(self, speed: float) -> QWidget:
         button = QToolButton()
         button.setObjectName(f"speed-{speed:g}")
@@ -149,13 +134,6 @@ class TransportView(QFrame):
         self._frame.show_frame(take, state.frame)
         self._time.setText("" if take is None else wording.seconds(take, state.frame))
         self._length.setText("" if take is None else f"of {wording.seconds(take, take.frames)}")
-        if state.scene is not self._scene:
-            self._scene = state.scene
-            self._take.clear()
-            for one in state.scene.performers:
-                icon = icons.icon("partner" if one.partner else "take")
-                self._take.addItem(icon, one.id, one.id)
-        self._take.setCurrentIndex(self._take.findData(state.active))
 
     def _show_ui(self, ui: UiState) -> None:
         for button in self._speeds.buttons():

@@ -35,6 +35,9 @@ class DropZones(QWidget):
         self._window = window
         self.setObjectName("drop-zones")
         self.setAttribute(Qt.WidgetAttribute.WA_StyledBackground)
+        # The plots are native windows: only another one can lie above them.
+        self.setAttribute(Qt.WidgetAttribute.WA_DontCreateNativeAncestors)
+        self.setAttribute(Qt.WidgetAttribute.WA_NativeWindow)
         self.setAcceptDrops(True)
         self._zones: dict[str, QFrame] = {}
         self._several = False

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Qt, QTimer, Signal
+from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QFrame, QSplitter, QVBoxLayout, QWidget
 
 from mocapstudio.gui import settings
@@ -22,9 +23,6 @@ if TYPE_CHECKING:
     from mocapstudio.gui.views.curves import CurvesView
     from mocapstudio.gui.views.digression_map import DigressionMapView
     from mocapstudio.gui.views.viewport import Viewport
-
-_COLUMNS = (370, 640, 330)
-_ROWS = (460, 210, 140)
 
 
 class ReviewWorkspace(QWidget):
@@ -59,6 +57,7 @@ class ReviewWorkspace(QWidget):
         self._stage, self._map_place, self._curves_place = _place(), _place(), _place()
         self._columns = QSplitter(Qt.Orientation.Horizontal)
         self._rows = QSplitter(Qt.Orientation.Vertical)
+        self._shared_out = False
         self._lay_out()
         self._parts = {
             "view-queue": self.queue,
@@ -82,8 +81,22 @@ class ReviewWorkspace(QWidget):
         """Put all parts back where they came from."""
         for name in self._parts:
             self._actions[name].setChecked(True)
-        self._columns.setSizes(list(_COLUMNS))
-        self._rows.setSizes(list(_ROWS))
+        self._share_out()
+
+    def showEvent(self, event: QShowEvent) -> None:
+        """Share the room out at first; later the splitters keep what the user made of it."""
+        super().showEvent(event)
+        if not self._shared_out:
+            self._shared_out = True
+            self._share_out()
+
+    def _share_out(self) -> None:
+        width, height = self.width(), self.height()
+        queue = min(max(round(0.32 * width), 340), 470)
+        inspector = min(max(round(0.24 * width), 310), 380)
+        self._columns.setSizes([queue, width - queue - inspector, inspector])
+        rows = [round(share * height) for share in (0.57, 0.25, 0.18)]
+        self._rows.setSizes(rows)
 
     def frame_joint(self) -> None:
         """Move the camera to the selected joint."""
@@ -106,14 +119,13 @@ class ReviewWorkspace(QWidget):
         settings.set_layout("rows", self._rows.saveState())
         hidden = [name for name in self._parts if not self._actions[name].isChecked()]
         settings.set_text("hidden", " ".join(hidden))
-        self.queue.remember()
 
     def restore(self) -> None:
         """Lay out as remembered."""
         for splitter, name in ((self._columns, "columns"), (self._rows, "rows")):
             state = settings.layout(name)
-            if state is not None:
-                splitter.restoreState(state)
+            if state is not None and splitter.restoreState(state):
+                self._shared_out = True
         for name in settings.text("hidden").split():
             if name in self._parts:
                 self._actions[name].setChecked(False)
@@ -138,8 +150,6 @@ class ReviewWorkspace(QWidget):
             self._columns.setStretchFactor(index, stretch)
         for index, stretch in enumerate((6, 3, 2)):
             self._rows.setStretchFactor(index, stretch)
-        self._columns.setSizes(list(_COLUMNS))
-        self._rows.setSizes(list(_ROWS))
         whole = QVBoxLayout(self)
         whole.setContentsMargins(0, 0, 0, 0)
         whole.addWidget(self._rows)
