@@ -144,9 +144,7 @@ def test_context_may_be_repeated(mocapstudio, broken, tmp_path, figure) -> None:
     assert detected(mocapstudio, broken, "--context", tmp_path / "both") == [both]
 
 
-def test_joint_map_lets_other_names_serve_as_context(
-    mocapstudio, broken, tmp_path, figure
-) -> None:
+def test_joint_map_lets_other_names_serve_as_context(mocapstudio, broken, tmp_path, figure) -> None:
     named = figure(seed=1).write(tmp_path / "named.bvh")
     alien = figure(seed=1, prefix="actor:").write(tmp_path / "alien.bvh")
     names = tmp_path / "names.json"

@@ -1,0 +1,88 @@
+"""The contract of `mocapstudio inspect`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+FILE_KEYS = {"path", "format", "frames", "fps", "joints", "markers", "problems"}
+
+
+def inspected(mocapstudio, *words, code: int = 0) -> list[dict]:
+    done = mocapstudio("inspect", *words, "--json", "-")
+    assert done.returncode == code, done.stderr
+    return json.loads(done.stdout)["files"]
+
+
+def test_json(mocapstudio, figure, tmp_path: Path) -> None:
+    path = figure(seconds=2).write(tmp_path / "take.bvh")
+    [file] = inspected(mocapstudio, path)
+    assert set(file) >= FILE_KEYS
+    assert file["path"] == str(path)
+    assert (file["format"], file["frames"], file["fps"]) == ("bvh", 60, 30.0)
+    assert file["joints"] == figure().names
+    assert file["markers"] == []
+    assert file["unit"] == 0.01
+    for problem in file["problems"]:
+        assert set(problem) == {"line", "what", "done"}
+        assert "guessed" in problem["done"]
+
+
+def test_the_problems_name_their_lines(mocapstudio, figure, tmp_path: Path) -> None:
+    lines = figure(seconds=2).lines()
+    at = next(i for i, line in enumerate(lines) if line.startswith("Frame Time"))
+    lines[at] = "Frame Time: 0.0"
+    path = tmp_path / "take.bvh"
+    path.write_text("\n".join(lines))
+    [file] = inspected(mocapstudio, path)
+    [problem] = [p for p in file["problems"] if "Frame Time" in p["what"]]
+    assert problem["line"] == at + 1
+    assert file["fps"] == 100.0
+    [file] = inspected(mocapstudio, path, "--fps", "119.88", "--unit", "cm", "--up", "y")
+    assert file["fps"] == pytest.approx(120_000 / 1001)
+    assert file["problems"] == []
+
+
+def test_one_bad_file_among_several(mocapstudio, figure, tmp_path: Path) -> None:
+    good = [figure(seconds=1).write(tmp_path / name) for name in ("a.bvh", "z.bvh")]
+    bad = tmp_path / "bad.bvh"
+    bad.write_text("\n".join(figure(seconds=1).lines()[:-1]) + "\n1 2 oops\n")
+    out = tmp_path / "report.json"
+    done = mocapstudio("inspect", good[0], bad, good[1], "--json", out)
+    assert done.returncode == 2
+    [line] = done.stderr.splitlines()
+    assert line.startswith(
+        f"error: {bad}: {len(figure(seconds=1).lines())}: 'oops' is not a number"
+    )
+    files = json.loads(out.read_text())["files"]
+    assert [file["path"] for file in files] == [str(path) for path in good]
+
+
+def test_lenient(mocapstudio, figure, tmp_path: Path) -> None:
+    path = tmp_path / "short.bvh"
+    path.write_text("\n".join(figure(seconds=1).lines()[:-3]) + "\n")
+    assert inspected(mocapstudio, path, code=2) == []
+    [file] = inspected(mocapstudio, path, "--lenient")
+    assert file["frames"] == 27
+    assert any("27 rows" in problem["what"] for problem in file["problems"])
+
+
+def test_the_table_fits_a_terminal(mocapstudio, figure, tmp_path: Path) -> None:
+    figure(seconds=1).write(tmp_path / "take.bvh")
+    done = mocapstudio("inspect", tmp_path, COLUMNS="80")
+    assert done.returncode == 0
+    assert "11 joints" in done.stdout
+    assert "30 frames at 30 fps" in done.stdout
+    assert "--unit" in done.stdout
+    assert max(map(len, done.stdout.splitlines())) <= max(80, len(str(tmp_path / "take.bvh")))
+
+
+def test_real_takes(mocapstudio, data: Path) -> None:
+    files = inspected(mocapstudio, data / "rokoko_animated_drawings_bvh_MIT")
+    assert {Path(f["path"]).stem: (f["frames"], len(f["joints"])) for f in files} == {
+        "dab": (339, 27),
+        "jesse_dance": (1007, 60),
+        "wave_hello": (839, 27),
+    }
