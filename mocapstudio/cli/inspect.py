@@ -19,6 +19,9 @@ Lenient = Annotated[
     typer.Option("--lenient", help="Read the whole rows there are, whatever number is stated."),
 ]
 
+# Which option of the command decides what a reader guessed.
+_OPTIONS = {"fps": "--fps", "unit": "--unit", "up": "--up"}
+
 
 def inspect(
     files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Files or folders.")],
@@ -78,12 +81,7 @@ def as_json(takes: list[Take], report: ImportReport) -> dict[str, Any]:
 
 
 def _problem(problem: Problem) -> dict[str, Any]:
-    return {
-        "line": problem.line,
-        "what": problem.what,
-        "done": problem.done,
-        "guess": problem.guess,
-    }
+    return {"line": problem.line, "what": problem.what, "done": problem.done}
 
 
 def _show(takes: list[Take], report: ImportReport) -> None:
@@ -100,7 +98,7 @@ def _show(takes: list[Take], report: ImportReport) -> None:
     table = Table("Line", "Found", "Done", "Override", box=None, pad_edge=False, padding=(0, 2))
     for problem in report.problems:
         line = "-" if problem.line is None else str(problem.line)
-        flag = f"--{problem.override}" if problem.override else ""
+        flag = _OPTIONS.get(problem.override or "", "")
         style = "dim" if problem.guess else None
         table.add_row(line, problem.what, problem.done, flag, style=style)
     console.print(Padding(table, (0, 0, 1, 2)))
