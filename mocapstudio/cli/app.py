@@ -27,6 +27,7 @@ COMMANDS = {
     "convert": "Write a take in another format.",
     "export": "Write what was decided in a session, without the desk.",
     "report": "Write a session's report.",
+    "evaluate": "Measure detection, repair and speed on takes with known errors.",
     "doctor": "Check display, OpenGL, libraries and caches.",
 }
 
