@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 import numpy as np
@@ -16,10 +16,29 @@ from mocapstudio.motion.take import Take
 from mocapstudio.review.document import Document
 
 NAMES = (
-    "Hips Spine Spine1 Chest Neck Head LeftShoulder LeftArm LeftForeArm LeftHand RightShoulder"
-    " RightArm RightForeArm RightHand LeftUpLeg LeftLeg LeftFoot LeftToeBase RightUpLeg RightLeg"
-    " RightFoot RightToeBase"
-).split()
+    "Hips",
+    "Spine",
+    "Spine1",
+    "Chest",
+    "Neck",
+    "Head",
+    "LeftShoulder",
+    "LeftArm",
+    "LeftForeArm",
+    "LeftHand",
+    "RightShoulder",
+    "RightArm",
+    "RightForeArm",
+    "RightHand",
+    "LeftUpLeg",
+    "LeftLeg",
+    "LeftFoot",
+    "LeftToeBase",
+    "RightUpLeg",
+    "RightLeg",
+    "RightFoot",
+    "RightToeBase",
+)
 _PARENTS = (-1, 0, 1, 2, 3, 4, 3, 6, 7, 8, 3, 10, 11, 12, 0, 14, 15, 16, 0, 18, 19, 20)
 _OFFSETS = {
     "Hips": (0, 0, 0),
@@ -99,7 +118,7 @@ class MapAnalysis:
     take: Take
     map: DigressionMap
     flags: tuple[Flag, ...]
-    parameters: DetectionParameters = DetectionParameters()
+    parameters: DetectionParameters = field(default_factory=DetectionParameters)
 
     def with_threshold(self, threshold: float) -> MapAnalysis:
         kept = tuple(flag for flag in self.all_flags() if flag.peak >= threshold)

@@ -15,7 +15,7 @@ from mocapstudio.gui.plots.curve_set import Role, pen
 from mocapstudio.gui.plots.quantities import Quantity
 from mocapstudio.gui.plots.time_plot import LEFT_GUTTER, RIGHT_GUTTER
 
-VALUE_AXIS_WIDTH = 50
+VALUE_AXIS_WIDTH = 46
 PANEL_WIDTH = LEFT_GUTTER - VALUE_AXIS_WIDTH
 _LINE = 15
 
@@ -36,7 +36,7 @@ class CurvePanel(QWidget):
         self.chooser = QComboBox()
         self.chooser.setToolTip("What the curves show")
         self.chooser.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-        self.chooser.setFont(small_font(12))
+        self.chooser.setFont(small_font())
         self.chooser.activated.connect(self._choose)
         self.legend = Legend()
         column = QVBoxLayout(self)
@@ -77,6 +77,7 @@ class Legend(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self._roles: tuple[Role, ...] = ()
+        self._names: tuple[str, ...] = ()
         self.setFixedHeight(3 * _LINE)
 
     @property
@@ -84,10 +85,10 @@ class Legend(QWidget):
         """What is drawn."""
         return self._roles
 
-    def set_roles(self, roles: tuple[Role, ...]) -> None:
-        """Say what is drawn."""
-        if roles != self._roles:
-            self._roles = roles
+    def set_roles(self, roles: tuple[Role, ...], names: tuple[str, ...]) -> None:
+        """Say what is drawn, and the names of the components."""
+        if (roles, names) != (self._roles, self._names):
+            self._roles, self._names = roles, names
             self.update()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
@@ -97,10 +98,10 @@ class Legend(QWidget):
         p = QPainter(self)
         p.setFont(small_font())
         for number, role in enumerate(self._roles):
-            middle = number * _LINE + _LINE // 2
-            for place, name in enumerate(("x", "y", "z")):
+            top = number * _LINE + _LINE // 2 - 3 * (len(self._names) - 1) // 2
+            for place, name in enumerate(self._names):
                 p.setPen(pen(look, role, name, alone))
-                p.drawLine(2, middle - 3 + 3 * place, 26, middle - 3 + 3 * place)
+                p.drawLine(2, top + 3 * place, 26, top + 3 * place)
             p.setPen(QColor(look.muted))
             room = QRectF(34, number * _LINE, self.width() - 34, _LINE)
             p.drawText(room, int(Qt.AlignmentFlag.AlignVCenter), role)

@@ -32,6 +32,9 @@ _DASHES = {
     Verdict.DEFERRED: Qt.PenStyle.DashLine,
 }
 
+# What is settled steps back, so that what is left to decide stands out.
+_SETTLED = (Verdict.ACCEPTED, Verdict.REJECTED)
+
 
 @dataclass(frozen=True)
 class Frame:
@@ -185,6 +188,8 @@ def draw_flags(p: QPainter, at: Frame, queue: Iterable[QueueItem]) -> None:
     p.setBrush(Qt.BrushStyle.NoBrush)
     _trace(p, gone, QColor(at.theme.faint), at.theme, Qt.PenStyle.DotLine)
     for verdict, path in paths.items():
+        if verdict in _SETTLED:
+            p.fillPath(path, colours.faded(at.theme.field, 0.5))
         _trace(p, path, QColor(at.theme.verdict(verdict)), at.theme, _DASHES[verdict])
 
 

@@ -22,7 +22,6 @@ from mocapstudio.gui.plots.rows import Group, RowLayout
 from mocapstudio.gui.plots.time_plot import LEFT_GUTTER
 
 _LIMB_ROOM = 66.0
-_MARGIN = 10.0
 _LEGIBLE = 11
 _LINE = 13.0
 
@@ -102,8 +101,10 @@ class RowLabels(QWidget):
         if self._edits:
             p.setFont(small_font(10))
             p.setPen(QColor(look.faint))
-            room = QRectF(_MARGIN, self.height() - 13, self.width() - 2 * _MARGIN + 3, 14)
-            p.drawText(room, int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignTop), "edits")
+            room = QRectF(0, self.height() - 13, _LIMB_ROOM, 13)
+            p.drawText(
+                room, int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter), "edits"
+            )
         p.end()
 
     def _draw_limb(self, p: QPainter, look: themes.Theme, group: Group) -> None:

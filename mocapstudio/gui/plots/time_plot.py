@@ -259,7 +259,9 @@ class TimePlot(pg.PlotWidget):  # type: ignore[misc]
         super().leaveEvent(event)
 
     def _scrub(self, at: QPointF) -> None:
-        self.scrubbed.emit(self.whole_frame_at(at.x()))
+        area = self.area
+        x = min(max(at.x(), area.left()), area.right())
+        self.scrubbed.emit(self.whole_frame_at(x))
 
     def _show_cursor(self, at: QPointF) -> None:
         shape = Qt.CursorShape.ArrowCursor

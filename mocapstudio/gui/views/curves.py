@@ -174,7 +174,8 @@ class CurvesView(QWidget):
         start, offered = self._offered(row, quantity, order, original)
         self.curve_set.set(Role.PROPOSAL, offered, start)
         self.panel.offer(quantities_of(row), quantity)
-        self.panel.legend.set_roles(tuple(r for r in Role if self.curve_set.curves(r) is not None))
+        drawn = tuple(r for r in Role if self.curve_set.curves(r) is not None)
+        self.panel.legend.set_roles(drawn, original.names)
         self.axis.set_unit(unit_of(quantity))
         self._fit()
 
