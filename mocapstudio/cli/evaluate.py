@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from mocapstudio.evaluation.reports import Report
 
 
+_WIDTH = 160
+"""Of tables that go to a file or another program."""
+
+
 class What(StrEnum):
     """What is measured."""
 
@@ -118,6 +122,8 @@ def _show(report: Report) -> None:
     from rich.table import Table
 
     console = Console()
+    if not console.is_terminal:
+        console = Console(width=_WIDTH)
     for table in report.tables:
         shown = Table(
             title=table.title,

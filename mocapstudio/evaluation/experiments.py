@@ -241,7 +241,7 @@ def _detectors(method: str, learnt: Mapping[str, dict[str, Detector]]) -> dict[s
     if method == OURS:
         return {"ours": detectors.ours()}
     if method == LITERAL:
-        return {"literal (paper 1 as printed)": detectors.literal()}
+        return {"literal mode": detectors.literal()}
     return learnt.get(method, {})
 
 

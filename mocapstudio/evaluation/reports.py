@@ -28,6 +28,7 @@ from mocapstudio.evaluation.repair_benchmark import (
     by_peer,
     ours_as_detected,
     ours_given_truth,
+    perfect,
     repairing,
     tuned_peers,
     untouched,
@@ -98,7 +99,7 @@ def repair(
             "ours, true spans": ours_given_truth,
             "ours, own flags": ours_as_detected,
         }
-        methods = ours | peers | {"nothing done": untouched}
+        methods = ours | peers | {"nothing done": untouched, "clean take": perfect}
         rows = yield from repairing(methods, tested, again=True)
         tables += repair_tables(f"Repair, {corpus}, {context}", rows)
         record[corpus] = [row.to_json() for row in rows]

@@ -127,10 +127,10 @@ def _held_out(kind: Kind, frames: int, rate: float, rng: np.random.Generator) ->
 
 
 def axis(frames: int, rng: np.random.Generator) -> Array:
-    """(frames, 3) unit vectors: a random axis that wanders smoothly by some tens of degrees."""
+    """(frames, 3) unit vectors: a random axis that wanders smoothly, by 20° at the most as a rule."""
     ends = rng.standard_normal((2, 3))
     ends /= np.linalg.norm(ends, axis=1, keepdims=True)
-    t = np.linspace(0.0, 0.5, frames)[:, None]
+    t = np.linspace(0.0, 0.25, frames)[:, None]
     line = ends[0] + t * (ends[1] - ends[0])
     return np.asarray(line / np.linalg.norm(line, axis=1, keepdims=True))
 
