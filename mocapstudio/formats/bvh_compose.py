@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapstudio.formats.bvh_patch import frame_time
 from mocapstudio.formats.euler import nearest_euler
+from mocapstudio.formats.frame_time import frame_time
 from mocapstudio.formats.guesses import turn_to_y_up
 from mocapstudio.formats.options import UNITS, WriteOptions
 from mocapstudio.motion import rotations as rot

@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from mocapstudio.formats.bvh_motion import LARGEST
+from mocapstudio.formats.bvh_rows import LARGEST
 from mocapstudio.formats.report import Problem
 from mocapstudio.motion.errors import FileError
 

@@ -10,11 +10,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapstudio.formats.bvh_motion import MotionBlock, Reading, parse_motion
-from mocapstudio.formats.bvh_read import BvhRecord, in_metres, stated_rate, turn_inside
+from mocapstudio.formats.bvh_motion import parse_motion
+from mocapstudio.formats.bvh_read import BvhRecord, in_metres, turn_inside
+from mocapstudio.formats.bvh_rows import MotionBlock
 from mocapstudio.formats.bvh_take import motion
 from mocapstudio.formats.changes import Changes, changes, undeclared
 from mocapstudio.formats.euler import nearest_euler
+from mocapstudio.formats.frame_time import frame_time, stated_rate
+from mocapstudio.formats.reading import Reading
 from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.errors import MocapError
@@ -197,11 +200,6 @@ def _rate_splice(record: BvhRecord, rate: Fraction) -> list[Splice]:
         return [(*block.frame_time_span, text)]
     newline = b"\r\n" if b"\r\n" in record.data[: block.start] else b"\n"
     return [(*block.frame_time_span, newline + b"Frame Time: " + text)]
-
-
-def frame_time(rate: Fraction) -> str:
-    """Seconds a frame lasts, with the digits that tell the rate again."""
-    return f"{float(1 / rate):.12f}".rstrip("0").ljust(8, "0")
 
 
 def _inside(splice: Splice, cuts: list[Splice]) -> bool:

@@ -12,17 +12,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapstudio.formats.bvh_hierarchy import Hierarchy, parse_hierarchy
-from mocapstudio.formats.bvh_motion import MotionBlock, Reading, parse_motion
+from mocapstudio.formats.bvh_motion import parse_motion
+from mocapstudio.formats.bvh_rows import MotionBlock
 from mocapstudio.formats.bvh_take import Layout, lay_out, motion
+from mocapstudio.formats.frame_time import stated_rate
 from mocapstudio.formats.guesses import (
-    NO_RATE,
     guess_unit,
     guess_up,
-    rate_from_frame_time,
     synthetic_start,
     turn_to_y_up,
 )
 from mocapstudio.formats.options import ReadOptions, Up
+from mocapstudio.formats.reading import Reading
 from mocapstudio.formats.report import ImportReport, Problem
 from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.skeleton import Skeleton
@@ -32,9 +33,6 @@ Array = NDArray[np.float64]
 
 _MOTION = re.compile(rb"(?:^|[\r\n}])[ \t]*(MOTION)\b", re.IGNORECASE)
 _BEGINS = re.compile(rb"\s*HIERARCHY\b", re.IGNORECASE)
-
-# Seconds a frame (or milliseconds, or frames a second, where a file mistakes them).
-_SHORTEST, _LONGEST = 1e-5, 1000.0
 _BOM = b"\xef\xbb\xbf"
 
 
@@ -191,42 +189,16 @@ def turn_inside(rotations: Array, translations: Array, source: Source) -> Array:
 
 
 def _rate(reading: Reading, block: MotionBlock, options: ReadOptions) -> Fraction:
-    line = reading.line(block.frame_time_span[0])
-    stated, problem = stated_rate(block.frame_time, line)
-    if stated is None:
-        raise reading.error(block.frame_time_span[0], problem.what if problem else "")
+    at = block.frame_time_span[0]
+    try:
+        stated, problem = stated_rate(block.frame_time, reading.line(at))
+    except ValueError as bad:
+        raise reading.error(at, str(bad)) from None
     if options.fps is not None:
         return options.fps
     if problem:
         reading.problems.append(problem)
     return stated
-
-
-def stated_rate(text: str, line: int | None = None) -> tuple[Fraction | None, Problem | None]:
-    """Frames a second that a frame time as written stands for, and what was odd about it.
-
-    The rate is None where the text is not a number at all.
-    """
-    if not text:
-        return NO_RATE, _rate_problem(line, "'Frame Time:' is missing", NO_RATE)
-    dotted = text.replace(",", ".")
-    if not re.fullmatch(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?", dotted):
-        return None, Problem(line, f"'Frame Time: {text}' is not a number", "")
-    value = float(dotted)
-    what = f"'Frame Time: {text}'"
-    if not _SHORTEST <= value <= _LONGEST:
-        return NO_RATE, _rate_problem(line, f"{what} is no duration of a frame", NO_RATE)
-    if value in (24, 25, 30, 50, 60, 100, 120, 240):
-        rate = Fraction(int(value))
-        return rate, _rate_problem(line, f"{what} looks like frames a second", rate)
-    if value > 2:
-        rate = rate_from_frame_time(f"{value / 1000:.9g}")
-        return rate, _rate_problem(line, f"{what} looks like milliseconds", rate)
-    return rate_from_frame_time(dotted), None
-
-
-def _rate_problem(line: int | None, what: str, rate: Fraction) -> Problem:
-    return Problem(line, what, f"guessed {float(rate):g} frames a second", "fps", guess=True)
 
 
 def _unit(reading: Reading, skeleton: Skeleton, options: ReadOptions) -> float:

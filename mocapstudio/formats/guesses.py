@@ -1,8 +1,6 @@
-"""Guesses about what a motion file leaves open: rate, unit, up axis, T-pose. Named as guesses."""
+"""Guesses about what a motion file leaves open: unit, up axis, T-pose. Named as guesses."""
 
 from __future__ import annotations
-
-from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,15 +13,6 @@ from mocapstudio.motion.topology import topology
 
 Array = NDArray[np.float64]
 
-NO_RATE = Fraction(100)
-"""Frames a second where a file states none: the rate of the inertial suits that do so."""
-
-_WHOLE_RATES = (120, 60, 30, 24, 25, 50, 100, 240, 200, 48, 90, 150, 250, 300, 500, 1000, 125, 360)
-_RATES = (
-    *map(Fraction, _WHOLE_RATES),
-    *(Fraction(nominal * 1000, 1001) for nominal in (120, 60, 30, 24, 240)),
-)
-
 # Thigh and shank of an adult; half of all people lie within a tenth of it.
 _LEG_METRES = 0.85
 _HEIGHT_METRES = 1.7
@@ -32,34 +21,6 @@ _PLAUSIBLE_LEG = (0.55, 1.05)
 
 _LATEST_START = 4
 _EARLY = 120
-
-
-def rate_from_frame_time(text: str) -> Fraction:
-    """Frames a second from a frame time as it is written.
-
-    A usual rate counts as meant where its frame time, rounded or cut off to the decimals that are
-    written, is the one written: ``.0083333`` is 120, ``0.008342`` is 120000/1001.
-
-    Parameters
-    ----------
-    text
-        A positive decimal number of seconds.
-    """
-    exact = Fraction(text)
-    _, _, decimals = text.lower().partition("e")[0].partition(".")
-    exponent = text.lower().partition("e")[2]
-    ulp = Fraction(10) ** (int(exponent or 0) - len(decimals))
-    if Fraction(1) / exact in _RATES:
-        return 1 / exact
-    near = [r for r in _RATES if round(1 / r / ulp) * ulp == exact]
-    near += [r for r in _RATES if 1 / r // ulp * ulp == exact]
-    if near and abs(near[0] * exact - 1) < Fraction(1, 20):
-        return near[0]
-    whole = round(1 / exact)
-    if whole and round(Fraction(1, whole) / ulp) * ulp == exact:
-        return Fraction(whole)
-    close = [r for r in _RATES if abs(r * exact - 1) < Fraction(1, 20_000)]
-    return close[0] if close else (1 / exact).limit_denominator(1001)
 
 
 def guess_unit(skeleton: Skeleton) -> tuple[float, str]:
