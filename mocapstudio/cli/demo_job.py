@@ -110,13 +110,15 @@ def _pictures(
     from mocapstudio.pictures.curve_picture import curve_picture
     from mocapstudio.pictures.map_picture import map_picture
     from mocapstudio.pictures.pose_picture import pose_picture
+    from mocapstudio.pictures.stick import frame_of_change
 
     known = [Declared(row, one.start, one.end) for one in truths for row in one.joints]
     map_picture(analysis, known=known).save(folder / "map.png")
     notes = set()
     for number, flag in enumerate(_worst_apart(analysis.flags, _POSES), start=1):
         title = f"{flag.joint} · {flag.kind.value} · score {flag.score:.2f}"
-        pose = pose_picture(analysis.take, result, flag.peak_frame, flag.joints, title=title)
+        frame = frame_of_change(analysis.take, result, flag.start, flag.end)
+        pose = pose_picture(analysis.take, result, frame, flag.joints, title=title)
         pose.save(folder / f"pose-{number}.png")
         curve = curve_picture(
             analysis.take, result, flag.joint, (flag.start, flag.end), title=title

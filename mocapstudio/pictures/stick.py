@@ -61,3 +61,14 @@ def stick(take: Take, frame: int, joints: Collection[str] = ()) -> Stick:
     bones = np.stack([upper, lower], axis=1)[solid].astype(np.int64)
     heading, _ = split_heading(take, frame, frame + 1)
     return Stick(points, bones, marked, marked[bones[:, 0]], float(heading[0]))
+
+
+def frame_of_change(before: Take, after: Take, start: int, end: int) -> int:
+    """Frame of [start, end) at which two versions of a take lie farthest apart."""
+    there, here = (take_pose(take, start, end) for take in (before, after))
+    apart = np.linalg.norm(there[0] - here[0], axis=-1)
+    # A turned joint moves only what hangs on it, so tips count too.
+    skeleton = before.skeleton
+    tips = [end_positions(skeleton, *pose) for pose in (there, here)]
+    apart = np.concatenate([apart, np.linalg.norm(tips[0] - tips[1], axis=-1)], axis=1)
+    return start + int(apart.max(axis=1).argmax())

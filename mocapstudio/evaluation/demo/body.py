@@ -29,6 +29,8 @@ Array = NDArray[np.float64]
 
 _FORWARD = np.array([0.0, 0.0, 1.0])
 _ARC = np.array([0.0, 0.0, 0.15])
+_EASE, _SINK, _BOB = 0.003, 0.017, 0.009
+"""Metres: pelvis below straight legs in standing, further in walking, and its bob."""
 _LONGEST_LEG = THIGH + SHANK - 0.0025
 """Metres: a leg keeps its knee bent a few degrees."""
 
@@ -54,7 +56,7 @@ def move(
     for side, sign in SIDES:
         hip = root + rot.rotate(pelvis, np.broadcast_to(hip_joint(sign), root.shape))
         feet[side] = foot_motion(route, sign, hip, heading, rng)
-    root[:, 1] -= _drop(root, pelvis, feet, float(times[1] - times[0]))
+    root[:, 1] -= _drop(root, pelvis, feet, route.step)
     local[:, 0] = pelvis
     _trunk(local, skeleton, route, reaching, times, rng)
     for side, sign in SIDES:
@@ -87,7 +89,7 @@ def _pelvis(
     phase, show = route.phase, route.stepping
     idle = smooth_noise(rng, times, 0.25, 1.0, 3) * (1 - 0.7 * show)[:, None]
     aside = -0.022 * show * wave(phase, 0.31) + 0.010 * idle[:, 0]
-    up = -0.004 - show * (0.016 - 0.015 * wave(phase, 0.31, 2)) - 0.002 * np.abs(idle[:, 1])
+    up = -_EASE - show * (_SINK - _BOB * wave(phase, 0.31, 2)) - 0.002 * np.abs(idle[:, 1])
     along = 0.010 * show * wave(phase, 0.45, 2) + 0.006 * idle[:, 2]
     local = np.stack([aside, STANDING_HEIGHT + up, along], axis=-1) + reaching.shift
     ground = rot.about_axis(1, heading)
@@ -139,7 +141,7 @@ def _trunk(
         local[:, skeleton.index[part]] = rot.multiply(extra, rot.from_euler("YZX", angles))
     heading = route.path(route.phase)[:, 2]
     ahead = np.clip(np.interp(times + 0.35, times, heading) - heading, -0.6, 0.6)
-    ahead = gaussian_filter1d(ahead, 0.15 / (times[1] - times[0]))
+    ahead = gaussian_filter1d(ahead, 0.15 / route.step)
     look = np.deg2rad(smooth_noise(rng, times, 0.3, 4.0, 2)) * (1.2 - show)[:, None]
     nod = np.deg2rad(2.0) - 0.5 * np.deg2rad(1.2) * show * wave(phase, 0.05, 2) + 0.5 * look[:, 1]
     turn = ahead + look[:, 0] + 0.45 * np.deg2rad(9.5) * show * wave(phase, 0.02)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
 
 from mocapstudio.evaluation.demo import curves
 from mocapstudio.evaluation.demo.route import Route
@@ -24,8 +25,9 @@ _UP = np.array([0.0, ANKLE_HEIGHT, 0.0])
 _TOE_OUT = np.deg2rad(6.0)
 _WALKING_BASE, _STANDING_BASE = 0.055, 0.100
 _IDLE_THIGH = np.deg2rad(10.0)
+_TOE_SECONDS = 0.03
 _CLEARANCE = 0.024
-_LED = np.array([0.56, 0.40, 0.56])
+_LED = np.array([0.49, 0.325, 0.49])
 """Shares of the swing over which either footprint leads the foot: along, up, aside."""
 
 
@@ -84,10 +86,12 @@ def foot_motion(
     free = free + (1 - minimum_jerk(share)) * (last - free)
     ankle = free + minimum_jerk(share + 1 - 1 / _LED) * (following - free)
     ankle[:, 1] += _CLEARANCE * 16 * (swing * (1 - swing)) ** 2
+    toe = np.maximum(-pitch, 0.0) * (1 - minimum_jerk(swing / 0.7))
     return FootMotion(
         np.where((swing > 0)[:, None], ankle, last),
         rot.multiply(rot.about_axis(1, yaw), rot.about_axis(0, -pitch)),
-        np.maximum(-pitch, 0.0) * (1 - minimum_jerk(swing / 0.7)),
+        # Toes are soft: they neither bend nor spring back at once.
+        gaussian_filter1d(toe, _TOE_SECONDS / route.step),
         swing == 0,
     )
 

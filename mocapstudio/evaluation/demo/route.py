@@ -19,7 +19,7 @@ from mocapstudio.evaluation.demo.variation import minimum_jerk, smooth_noise
 Array = NDArray[np.float64]
 
 STRIDE_SECONDS = 1.12
-STRIDE_METRES = 1.25
+STRIDE_METRES = 1.16
 RAMP_SECONDS = 0.9
 RAMP_STRIDES = 0.8
 START_PHASE = 0.06
@@ -70,6 +70,8 @@ class Route:
         Phase to 0..1: 1 on the way, 0 where the feet stand side by side.
     pauses
         Seconds (from, to) of every pause.
+    step
+        Seconds a frame.
     """
 
     phase: Array
@@ -77,6 +79,7 @@ class Route:
     path: CubicSpline[np.float64]
     spread: CubicSpline[np.float64]
     pauses: tuple[tuple[float, float], ...]
+    step: float
 
 
 def build_route(score: Sequence[Walk | Stand], times: Array, rng: np.random.Generator) -> Route:
@@ -106,6 +109,7 @@ def build_route(score: Sequence[Walk | Stand], times: Array, rng: np.random.Gene
         CubicSpline(grid, np.stack([x, z, heading], axis=-1)),
         CubicSpline(grid, angles),
         tuple(pauses),
+        float(times[1] - times[0]),
     )
 
 

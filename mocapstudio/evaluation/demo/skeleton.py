@@ -28,9 +28,9 @@ STANDING_HEIGHT = ANKLE_HEIGHT + SHANK + THIGH - HIP[1]
 
 _TRUNK: tuple[tuple[str, str, tuple[float, float, float]], ...] = (
     ("Hips", "", (0.0, 0.0, 0.0)),
-    ("Spine", "Hips", (0.0, 0.090, -0.010)),
+    ("Spine", "Hips", (0.0, 0.090, 0.0)),
     ("Chest", "Spine", (0.0, 0.200, 0.0)),
-    ("Head", "Chest", (0.0, 0.285, 0.010)),
+    ("Head", "Chest", (0.0, 0.285, 0.0)),
 )
 _ARM = (
     ("Shoulder", "Chest", (0.030, 0.200, 0.0)),
