@@ -107,6 +107,8 @@ class Journal:
         self._behind = False
         self.failure: FileError | None = None
         recovered = document.recovered
+        if recovered is not None and not recovered.path.exists():
+            recovered = None
         self.path = recovered.path if recovered is not None else self._place(document)
         self._lock = Lock(document.state.path or self.path, force)
         if recovered is not None and recovered.length > 0:

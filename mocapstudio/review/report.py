@@ -58,7 +58,8 @@ def report(document: Document) -> str:
         [
             _HEAD.format(title=escape(title), style=style),
             f"<header><h1>{escape(title)}</h1>",
-            f"<p class='muted'>mocapstudio {escape(__version__)} · {utc_now()}</p></header>",
+            f"<p class='muted'>mocapstudio {escape(__version__)} · {_when(utc_now())} UTC</p>",
+            "</header>",
             *(_performer(document, p) for p in state.scene.performers if _counts(document, p)),
             _analysis(document),
             "</body>\n</html>\n",
@@ -131,7 +132,7 @@ def _flags(take: Take, queue: Sequence[QueueItem]) -> str:
                 f"{flag.score:.2f}",
                 f"<span class='verdict {item.verdict.value}'>{word}</span>",
                 "" if decision is None else escape(decision.author),
-                "" if decision is None else escape(decision.time),
+                "" if decision is None else _when(decision.time),
             ]
         )
     head = ["#", "Joint", "Time (s)", "Frames", "Kind", "Score", "Verdict", "By", "When (UTC)"]
@@ -153,7 +154,7 @@ def _edits(take: Take, edits: Iterable[Edit]) -> str:
                 escape(one["method"]),
                 source,
                 escape(one["author"]),
-                escape(one["time"]),
+                _when(one["time"]),
             ]
         )
     head = ["Joint", "Time (s)", "Frames", "Method", "Donor (0-based frames)", "By", "When (UTC)"]
@@ -170,7 +171,7 @@ def _protected(document: Document, performer: Performer, take: Take) -> str:
             f"{take.seconds(one.start):.2f}",
             _frames(take, one.start, one.end),
             escape(one.author),
-            escape(one.time),
+            _when(one.time),
         ]
         for one in spans
     ]
@@ -191,6 +192,11 @@ def _analysis(document: Document) -> str:
     values += [("Note", f"{one.path}: {one.what}") for one in state.problems]
     cells = (f"<dt>{escape(k)}</dt><dd class='path'>{escape(str(v))}</dd>" for k, v in values)
     return f"<section><h2>How it was analysed</h2><dl>{''.join(cells)}</dl></section>"
+
+
+def _when(time: str) -> str:
+    """Date and time of day, without what every time has in common."""
+    return escape(time.replace("T", " ").removesuffix("Z"))
 
 
 def _frames(take: Take, start: int, end: int) -> str:

@@ -16,7 +16,8 @@ from mocapstudio.motion.take import Take
 from mocapstudio.review.model import Edit, QueueItem, Verdict
 from mocapstudio.review.rows import rows_of
 
-_LANE, _NAMES, _WIDTH, _AXIS = 16, 170, 1000, 24
+_LANE, _WIDTH, _AXIS = 16, 1000, 24
+_LETTER, _LETTERS = 6.4, 26
 _COLUMNS = 1200
 _MAP_COLOUR = (86, 140, 200)
 _TICKS = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 1200)
@@ -42,15 +43,17 @@ def flag_map(
         return ""
     lane = {row: i for i, row in enumerate(lanes)}
     height = len(lanes) * _LANE + _AXIS
+    left = 12 + round(_LETTER * min(max(map(len, lanes)), _LETTERS))
     scale = _WIDTH / take.frames
     marks = [_edit(edit, lane, scale) for edit in edits if not edit.muted]
     marks += [_flag(item, take, lane, scale) for item in reversed(queue)]
     return "".join(
         [
-            "<h3>Digression map</h3><figure><svg class='map' role='img'",
-            f" viewBox='0 0 {_NAMES + _WIDTH + 20} {height}' aria-label='Flags by joint and time'>",
-            *(_name(row, i) for row, i in lane.items()),
-            f"<g transform='translate({_NAMES} 0)'>",
+            f"<h3>{'Flags and changes' if mapped is None else 'Digression map'}</h3>",
+            "<figure><svg class='map' role='img'",
+            f" viewBox='0 0 {left + _WIDTH + 20} {height}' aria-label='Flags by joint and time'>",
+            *(_name(row, i, left) for row, i in lane.items()),
+            f"<g transform='translate({left} 0)'>",
             _picture(mapped, lanes) if mapped is not None else "",
             *marks,
             _axis(take, len(lanes) * _LANE, scale),
@@ -68,11 +71,11 @@ def _lanes(
     return tuple(row for row in rows_of(take) if row in used)
 
 
-def _name(row: str, at: int) -> str:
-    shown = row if len(row) <= 26 else f"{row[:25]}…"
+def _name(row: str, at: int, left: int) -> str:
+    shown = row if len(row) <= _LETTERS else f"{row[: _LETTERS - 1]}…"
     y = at * _LANE
-    band = f"<rect class='lane' x='{_NAMES}' y='{y + 1}' width='{_WIDTH}' height='{_LANE - 2}'/>"
-    x, base = _NAMES - 8, y + _LANE - 4
+    band = f"<rect class='lane' x='{left}' y='{y + 1}' width='{_WIDTH}' height='{_LANE - 2}'/>"
+    x, base = left - 8, y + _LANE - 4
     return f"{band}<text x='{x}' y='{base}' text-anchor='end'>{escape(shown)}</text>"
 
 
@@ -118,7 +121,7 @@ def _legend(with_map: bool) -> str:
     entries.append("<span><i class='edit'></i>changed</span>")
     if with_map:
         entries.append(
-            "<span><i class='shade'></i>the darker, the farther from its neighbours</span>"
+            "<span><i class='shade'></i>the stronger, the farther from its neighbours</span>"
         )
     return f"<figcaption class='legend'>{''.join(entries)}</figcaption>"
 

@@ -63,7 +63,10 @@ def save(document: Document, path: Path | str) -> None:
 
 
 def load(path: Path | str, relocate: Relocate | None = None, author: str | None = None) -> Document:
-    """Open a session file, with what a journal beside it holds beyond the last save.
+    """Open a session file, with what a crash left in the journal beside it.
+
+    A journal that this very process writes is no such: opening its session again goes back to the
+    last save.
 
     What is wrong with single takes (missing, changed) or was recovered stands in
     `DocumentState.problems`; what was decided about a missing take is kept.
@@ -87,7 +90,7 @@ def load(path: Path | str, relocate: Relocate | None = None, author: str | None 
     other = lock.holder(path)
     if other is not None:
         opening.tell(path, f"is open elsewhere: {other}")
-    elif journal.exists():
+    elif journal.exists() and not lock.is_open_here(path):
         try:
             opening.replay(journal_records.read(journal))
         except FileError as error:

@@ -264,6 +264,30 @@ def test_closing_leaves_nothing_behind(tmp_path: Path) -> None:
     assert sorted(p.name for p in tmp_path.iterdir()) == ["one.mocapstudio", "walk.bvh"]
 
 
+def test_opening_the_same_session_again_goes_back_to_the_last_save(tmp_path: Path) -> None:
+    path = _session(tmp_path)
+    document = _opened(path)
+    journal = Journal(document)
+    document.accept(FLAGS[0].id)
+    again = session_file.load(path)
+    assert again.state.sitting.edits == ()
+    journal.close()
+    Journal(again).close()
+
+
+def test_a_recovered_document_whose_journal_is_gone_begins_a_new_one(tmp_path: Path) -> None:
+    path = _session(tmp_path)
+    document = _opened(path)
+    journal = Journal(document)
+    document.accept(FLAGS[0].id)
+    _crash(journal)
+    back = session_file.load(path)
+    journal_path(path).unlink()
+    second = Journal(back)
+    _crash(second)
+    assert len(session_file.load(path).state.sitting.edits) == 1
+
+
 def test_a_session_open_elsewhere_gets_no_journal_unless_forced(tmp_path: Path) -> None:
     path = _session(tmp_path)
     lock_path(path).write_text('{"pid": 1, "host": "another-host"}')
@@ -312,10 +336,12 @@ def test_a_disk_without_room_stops_the_journal_and_is_told_once(tmp_path: Path) 
     with pytest.raises(FileError, match="cannot be written"):
         journal.sync()
     journal.sync()
-    assert len(session_file.load(path).state.sitting.decisions) == 1
+    kept = [type(e).__name__ for e in journal_records.read(journal_path(path)).events]
+    assert kept == ["Stepped"]
     session_file.save(document, path)
     document.reject(FLAGS[2].id)
     journal.sync()
+    _crash(journal)
     assert len(session_file.load(path).state.sitting.decisions) == 4
 
 
