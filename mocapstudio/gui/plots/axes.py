@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
+from PySide6.QtWidgets import QGraphicsItem
 
 from mocapstudio.gui import theme as themes
 from mocapstudio.gui.plots.ticks import time_ticks, value_ticks
@@ -16,11 +18,17 @@ _LABEL_ROOM = 122.0
 _HALF_LINE = 6.0
 
 
+@cache
 def small_font(pixels: int = 11) -> QFont:
     """Return the type of figures in plots."""
     font = themes.numbers_font()
     font.setPixelSize(pixels)
     return font
+
+
+def _keep_picture(axis: pg.AxisItem) -> None:
+    # The grip of the play head passes over the axis at every frame.
+    axis.setCacheMode(QGraphicsItem.CacheMode.DeviceCoordinateCache)
 
 
 def _plot_area(axis: pg.AxisItem) -> QRectF:
@@ -42,6 +50,7 @@ class TimeAxis(pg.AxisItem):  # type: ignore[misc]
         self._rate = 1.0
         self._first_frame = 0
         self.setHeight(TIME_AXIS_HEIGHT)
+        _keep_picture(self)
 
     def set_clock(self, rate: float, first_frame: int) -> None:
         """Say how many frames a second there are, and the file's number of frame 0."""
@@ -88,6 +97,7 @@ class ValueAxis(pg.AxisItem):  # type: ignore[misc]
         super().__init__("left", showValues=False)
         self._unit = ""
         self.setWidth(width)
+        _keep_picture(self)
 
     def set_unit(self, unit: str) -> None:
         """Say what is measured in."""
