@@ -96,7 +96,7 @@ class MainWindow(QMainWindow):
         """Ask about what is not saved, then remember the layout and end the jobs."""
         if self.bridge.state.dirty and not self._sure:
             event.ignore()
-            self.files.save_first(self._close_for_good)
+            self.files.save_first(self.close_without_asking)
             return
         self.bridge.set_ui(playing=False)
         settings.set_layout("window", self.saveGeometry())
@@ -106,7 +106,8 @@ class MainWindow(QMainWindow):
         self.journalling.close()
         super().closeEvent(event)
 
-    def _close_for_good(self) -> None:
+    def close_without_asking(self) -> None:
+        """Close; what was not saved is lost."""
         self._sure = True
         self.close()
 

@@ -5,25 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QKeyEvent
-from PySide6.QtWidgets import QComboBox, QGridLayout, QLineEdit, QSizePolicy, QWidget
+from PySide6.QtWidgets import QComboBox, QGridLayout, QSizePolicy, QWidget
 
 from mocapstudio.gui import icons, theme
 from mocapstudio.gui.queue.model import VERDICT_ICONS, Filter
+from mocapstudio.gui.widgets.fields import SearchField
 from mocapstudio.review.model import Verdict
-
-
-class _Search(QLineEdit):
-    """A text field that gives the keys back to the desk on Enter and Escape."""
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Leave on Enter, empty and leave on Escape."""
-        if event.key() == Qt.Key.Key_Escape:
-            self.clear()
-        if event.key() in (Qt.Key.Key_Escape, Qt.Key.Key_Return, Qt.Key.Key_Enter):
-            self.clearFocus()
-        else:
-            super().keyPressEvent(event)
 
 
 class FilterBar(QWidget):
@@ -34,7 +21,7 @@ class FilterBar(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("queue-filters")
-        self.search = _Search()
+        self.search = SearchField()
         self.search.setObjectName("queue-filter-text")
         self.search.setPlaceholderText("Filter: joint, kind, verdict")
         self.search.setToolTip("Show only flags with these words (Ctrl+F; Esc empties it)")

@@ -199,7 +199,7 @@ class QueueFilter(QSortFilterProxyModel):
             Name of the limb by row.
         """
         self._filter, self._limb_of = chosen, limb_of
-        self.invalidateRowsFilter()
+        self.invalidate()
 
     def filterAcceptsRow(self, row: int, parent: Index) -> bool:
         """Tell whether an item passes."""

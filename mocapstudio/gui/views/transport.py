@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import (
     QButtonGroup,
     QFrame,
     QHBoxLayout,
-    QSpinBox,
     QToolButton,
     QWidget,
 )
@@ -17,6 +15,7 @@ from mocapstudio.gui import wording
 from mocapstudio.gui.actions import Actions
 from mocapstudio.gui.document import DocumentBridge, UiState
 from mocapstudio.gui.playback import SPEEDS
+from mocapstudio.gui.widgets.fields import NumberField
 from mocapstudio.gui.widgets.parts import label
 from mocapstudio.motion.take import Take
 from mocapstudio.review.state import DocumentState
@@ -24,8 +23,8 @@ from mocapstudio.review.state import DocumentState
 _FRACTIONS = {0.25: "¼×", 0.5: "½×", 1.0: "1×"}
 
 
-class _FrameBox(QSpinBox):
-    """The file's own frame number; gives the keys back to the desk on Enter and Escape."""
+class _FrameBox(NumberField):
+    """The file's own frame number."""
 
     def __init__(self, bridge: DocumentBridge) -> None:
         super().__init__()
@@ -52,14 +51,6 @@ class _FrameBox(QSpinBox):
         """Step by arrow or wheel."""
         super().stepBy(steps)
         self._go()
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Leave on Enter, and on Escape without going anywhere."""
-        if event.key() == Qt.Key.Key_Escape:
-            self.show_frame(self._take, self._bridge.state.frame)
-        super().keyPressEvent(event)
-        if event.key() in (Qt.Key.Key_Escape, Qt.Key.Key_Return, Qt.Key.Key_Enter):
-            self.clearFocus()
 
     def _go(self) -> None:
         if self._take is not None:

@@ -1,0 +1,96 @@
+"""A desk in a real window, with settings and state of its own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import pytest
+from hands import Hands
+from PySide6.QtCore import QSettings
+
+from mocapstudio import formats
+
+
+@dataclass(frozen=True)
+class Generated:
+    """Files of a generated take with errors."""
+
+    take: Path
+    context: tuple[Path, ...]
+
+
+@pytest.fixture(scope="session")
+def generated_source(tmp_path_factory) -> Path:
+    """Twenty seconds of the demo take with errors, and as much of a clean one, as BVH."""
+    from mocapstudio.evaluation.demo import demo_context, demo_with_errors
+
+    folder = tmp_path_factory.mktemp("generated")
+    take, _ = demo_with_errors()
+    clean = demo_context()[0]
+    for one in (take, clean):
+        part = replace(one, rotations=one.rotations[:1200], translations=one.translations[:1200])
+        formats.write(part, folder / f"{one.name}.bvh")
+    (folder / f"{take.name}.bvh").rename(folder / "take.bvh")
+    (folder / f"{clean.name}.bvh").rename(folder / "clean.bvh")
+    return folder
+
+
+@pytest.fixture
+def generated(generated_source, tmp_path) -> Generated:
+    """The generated files in a folder that a test may write to."""
+    context = tmp_path / "context"
+    context.mkdir()
+    take, clean = tmp_path / "take.bvh", context / "clean.bvh"
+    take.write_bytes((generated_source / "take.bvh").read_bytes())
+    clean.write_bytes((generated_source / "clean.bvh").read_bytes())
+    return Generated(take, (clean,))
+
+
+@pytest.fixture
+def own_settings(tmp_path_factory, monkeypatch) -> Path:
+    """Settings and state in a folder of the test's own."""
+    folder = tmp_path_factory.mktemp("home")
+    QSettings.setPath(QSettings.Format.IniFormat, QSettings.Scope.UserScope, str(folder / "config"))
+    monkeypatch.setenv("XDG_STATE_HOME", str(folder / "state"))
+    monkeypatch.setenv("XDG_DATA_HOME", str(folder / "data"))
+    return folder
+
+
+@pytest.fixture
+def open_desk(qapp, qtbot, own_settings):
+    """Opens desks, and closes them at the end without a question."""
+    from mocapstudio.gui.application import make_application
+    from mocapstudio.gui.main_window import MainWindow
+
+    make_application()
+    windows: list[MainWindow] = []
+
+    def open_one(width: int = 1440, height: int = 900) -> MainWindow:
+        window = MainWindow()
+        windows.append(window)
+        window.resize(width, height)
+        window.move(0, 0)
+        with qtbot.waitSignal(window.workspace.filled, timeout=60_000):
+            window.start()
+        window.activateWindow()
+        qtbot.waitUntil(window.isActiveWindow)
+        return window
+
+    yield open_one
+    for window in windows:
+        window.close_without_asking()
+        window.deleteLater()
+    qapp.processEvents()
+
+
+@pytest.fixture
+def desk(open_desk):
+    """One desk, nothing open."""
+    return open_desk()
+
+
+@pytest.fixture
+def hands(desk, qtbot) -> Hands:
+    """A user at that desk."""
+    return Hands(desk, qtbot)
