@@ -84,6 +84,10 @@ def _curve(section: Section) -> str:
             f'<text x="{left - 6}" y="{y + 4:.0f}" text-anchor="end">{at:.1f}</text>'
             f'<text x="{x:.0f}" y="{top + side + 15}" text-anchor="middle">{at:.1f}</text>'
         )
+    parts.append(
+        f'<text x="{left + side}" y="{top + side + 30}" text-anchor="end">recall</text>'
+        f'<text x="{left + side}" y="14" text-anchor="end">precision (up)</text>'
+    )
     for i, row in enumerate(section.rows):
         colour = _COLOURS[i % len(_COLOURS)]
         counts = [words for _, (words, _) in sorted(row.scores.curve.items())]
@@ -101,7 +105,7 @@ def _curve(section: Section) -> str:
         if words.hits + words.false and words.hits + words.missed:
             x, y = left + words.recall * side, top + (1 - words.precision) * side
             parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4" fill="{colour}"/>')
-    caption = "precision over recall; the dot is the threshold as set"
+    caption = "one line a method over all thresholds; the dot is the threshold as set"
     return (
         f'<figure><svg viewBox="0 0 {width} {height}" width="{width}" height="{height}">'
         f"{''.join(parts)}</svg><figcaption>{caption}</figcaption></figure>"

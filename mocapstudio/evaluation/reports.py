@@ -33,7 +33,7 @@ from mocapstudio.evaluation.repair_benchmark import (
     tuned_peers,
     untouched,
 )
-from mocapstudio.evaluation.speed_benchmark import timing
+from mocapstudio.evaluation.speed_benchmark import growth, timing
 from mocapstudio.evaluation.tables import Table, detection_tables, repair_tables, speed_table
 from mocapstudio.motion.progress import Progress, run
 
@@ -112,7 +112,8 @@ def speed(
 ) -> Generator[Progress, None, Report]:
     """Measure speed; see `speed_benchmark.timing`."""
     rows = yield from timing(data, seed=seed, long=long)
-    return _report("Speed", {"speed": [r.to_json() for r in rows]}, [speed_table(rows)], [], seed)
+    record = {"speed": [row.to_json() for row in rows], "growth": growth(rows)}
+    return _report("Speed", record, [speed_table(rows)], [], seed)
 
 
 def against_labels(

@@ -127,7 +127,7 @@ def _held_out(kind: Kind, frames: int, rate: float, rng: np.random.Generator) ->
 
 
 def axis(frames: int, rng: np.random.Generator) -> Array:
-    """(frames, 3) unit vectors: a random axis that wanders smoothly, by 20° at the most as a rule."""
+    """(frames, 3) unit vectors: a random axis that wanders smoothly, rarely by over 20°."""
     ends = rng.standard_normal((2, 3))
     ends /= np.linalg.norm(ends, axis=1, keepdims=True)
     t = np.linspace(0.0, 0.25, frames)[:, None]

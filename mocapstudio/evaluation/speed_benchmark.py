@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Generator, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -34,27 +34,45 @@ class SpeedRow:
     ----------
     name
         What was done.
-    seconds
-        Best of the repetitions, warm.
+    seconds, cpu
+        Best of the repetitions, warm: by the clock, and of all processors together, which other
+        programs on the machine disturb less.
     reach
         Seconds to be reached, or NaN.
     paper
         Seconds that the paper states, or NaN.
+    series, size
+        Measurements of one series tell how cost grows with `size` seconds of motion.
     """
 
     name: str
     seconds: float
+    cpu: float
     reach: float = math.nan
     paper: float = math.nan
+    series: str = ""
+    size: float = math.nan
 
     def to_json(self) -> dict[str, Any]:
         """Plain objects for JSON."""
-        return {
-            "name": self.name,
-            "seconds": self.seconds,
-            "reach": self.reach,
-            "paper": self.paper,
-        }
+        return asdict(self)
+
+
+@dataclass(frozen=True)
+class _Work:
+    """What is to be measured: a row without its times."""
+
+    name: str
+    action: Callable[[], object]
+    times: int = 2
+    reach: float = math.nan
+    paper: float = math.nan
+    series: str = ""
+    size: float = math.nan
+
+    def measured(self) -> SpeedRow:
+        seconds, cpu = best_of(self.action, self.times)
+        return SpeedRow(self.name, seconds, cpu, self.reach, self.paper, self.series, self.size)
 
 
 def timing(
@@ -83,52 +101,54 @@ def timing(
         raise MocapError("no take of the data can be read")
     source = lasting(takes, _SOURCE_SECONDS)
     context = [lasting(takes[i:] + takes[:i], _CONTEXT_SECONDS) for i in range(_CONTEXT_TAKES)]
-    rows: list[SpeedRow] = []
-    work: list[tuple[str, Callable[[], object], float, float, int]] = [
-        ("20 s against itself, texture to map", lambda: to_map(source, ()), 0.05, 140.0, 5),
-        ("20 s against itself, whole analysis", lambda: run(detect(source)), 0.2, math.nan, 3),
-        (
-            f"20 s against {_CONTEXT_TAKES} takes of 15 s, whole analysis",
-            lambda: run(detect(source, context)),
-            math.nan,
-            math.nan,
-            2,
-        ),
-        *_growth(takes, source, context),
-        *_reading([found[i].path for i in order]),
+    against = f"20 s against {_CONTEXT_TAKES} takes of 15 s, whole analysis"
+    work = [
+        _Work("20 s against itself, texture to map", lambda: to_map(source, ()), 5, 0.05, 140.0),
+        _Work("20 s against itself, whole analysis", lambda: run(detect(source)), 3),
+        _Work(against, lambda: run(detect(source, context)), 2, 0.2),
+        *(_growth_of_source(takes, context, s) for s in (10, 20, 40, 80)),
+        *(_growth_of_context(source, context, n) for n in (5, 10, 20, 30)),
+        _reading([found[i].path for i in order]),
     ]
     if long:
         whole = lasting(takes, 600.0)
-        work.append(("600 s against itself, exact", lambda: to_map(whole, ()), 5.0, math.nan, 1))
-    for i, (name, action, reach, paper, times) in enumerate(work):
-        yield Progress(i / len(work), name)
-        rows.append(SpeedRow(name, best_of(action, times), reach, paper))
+        work.append(_Work("600 s against itself, exact", lambda: to_map(whole, ()), 1, 5.0))
+    rows: list[SpeedRow] = []
+    for i, one in enumerate(work):
+        yield Progress(i / len(work), one.name)
+        rows.append(one.measured())
     return rows
 
 
-def _growth(
-    takes: list[Take], source: Take, context: list[Take]
-) -> list[tuple[str, Callable[[], object], float, float, int]]:
-    """How cost grows with the source, and with the context."""
-    none = math.nan
-    rows: list[tuple[str, Callable[[], object], float, float, int]] = []
-    for seconds in (10, 20, 40, 80):
-        longer = lasting(takes, float(seconds))
-        name = f"source of {seconds} s against 10 takes of 15 s"
-        rows.append((name, lambda t=longer: to_map(t, context[:10]), none, none, 2))  # type: ignore[misc]
-    for count in (5, 10, 20, 30):
-        name = f"20 s against {count} takes of 15 s"
-        rows.append((name, lambda n=count: to_map(source, context[:n]), none, none, 2))  # type: ignore[misc]
-    return rows
+def growth(rows: Sequence[SpeedRow]) -> dict[str, float]:
+    """Exponent with which cost grows in each series: 1 is linear."""
+    found: dict[str, float] = {}
+    for series in dict.fromkeys(row.series for row in rows if row.series):
+        mine = [row for row in rows if row.series == series]
+        size, cost = np.log([row.size for row in mine]), np.log([row.cpu for row in mine])
+        found[series] = float(np.polyfit(size, cost, 1)[0])
+    return found
 
 
-def _reading(
-    paths: list[Path],
-) -> list[tuple[str, Callable[[], object], float, float, int]]:
+def _growth_of_source(takes: Sequence[Take], context: Sequence[Take], seconds: int) -> _Work:
+    longer = lasting(takes, float(seconds))
+    name = f"{seconds} s against 10 takes of 15 s"
+    return _Work(name, lambda: to_map(longer, context[:10]), series="source", size=seconds)
+
+
+def _growth_of_context(source: Take, context: Sequence[Take], count: int) -> _Work:
+    name = f"20 s against {count} takes of 15 s"
+    size = _SOURCE_SECONDS + count * _CONTEXT_SECONDS
+    return _Work(name, lambda: to_map(source, context[:count]), series="context", size=size)
+
+
+def _reading(paths: Sequence[Path]) -> _Work:
     largest = max(paths, key=lambda path: path.stat().st_size)
     megabytes = largest.stat().st_size / 1e6
+    # The figure to reach is for a large file; small ones cost mostly the opening.
+    reach = 0.02 * megabytes if megabytes > 5 else math.nan
     name = f"read a {megabytes:.1f} MB take ({largest.suffix[1:]})"
-    return [(name, lambda: formats.read(largest), 0.02 * megabytes, math.nan, 5)]
+    return _Work(name, lambda: formats.read(largest), 5, reach)
 
 
 def to_map(take: Take, context: Sequence[Take]) -> object:
@@ -152,13 +172,17 @@ def lasting(takes: Sequence[Take], seconds: float) -> Take:
     return joined.with_motion(joined.rotations[:frames], joined.translations[:frames])
 
 
-def best_of(action: Callable[[], object], times: int) -> float:
-    """Shortest time of some runs after one to warm up, seconds; a single run is not warmed up."""
+def best_of(action: Callable[[], object], times: int) -> tuple[float, float]:
+    """Shortest clock time and processor time of some runs, seconds, after one to warm up.
+
+    A single run is not warmed up.
+    """
     if times > 1:
         action()
-    taken = []
+    clock, cpu = [], []
     for _ in range(times):
-        started = time.perf_counter()
+        started, processor = time.perf_counter(), time.process_time()
         action()
-        taken.append(time.perf_counter() - started)
-    return min(taken)
+        clock.append(time.perf_counter() - started)
+        cpu.append(time.process_time() - processor)
+    return min(clock), min(cpu)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from mocapstudio.evaluation.detection_benchmark import DetectionScores
 from mocapstudio.evaluation.experiments import ALONE_A_MINUTE, PAPER, REACH, Section
 from mocapstudio.evaluation.repair_benchmark import LONG_SECONDS, RepairScores
-from mocapstudio.evaluation.speed_benchmark import SpeedRow
+from mocapstudio.evaluation.speed_benchmark import SpeedRow, growth
 
 
 @dataclass(frozen=True)
@@ -170,14 +170,16 @@ def _repair_row(row: RepairScores) -> tuple[str, ...]:
     )
 
 
-def speed_table(rows: Iterable[SpeedRow]) -> Table:
-    """Seconds beside those to be reached."""
-    head = ("what", "ms", "to reach", "paper")
+def speed_table(rows: Sequence[SpeedRow]) -> Table:
+    """Milliseconds beside those to be reached."""
+    head = ("what", "ms", "processor ms", "to reach", "paper")
     lines = tuple(
-        (row.name, *(number(1000.0 * x, 1) for x in (row.seconds, row.reach, row.paper)))
+        (row.name, *(number(1000.0 * x, 1) for x in (row.seconds, row.cpu, row.reach, row.paper)))
         for row in rows
     )
-    return Table("Speed", head, lines, "milliseconds, warm, best of some runs")
+    grows = ", ".join(f"{series}: {power:.2f}" for series, power in growth(rows).items())
+    note = f"milliseconds, warm, best of some runs; power with which cost grows by length, {grows}"
+    return Table("Speed", head, lines, note)
 
 
 def number(value: float, digits: int = 3) -> str:
