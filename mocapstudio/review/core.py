@@ -10,6 +10,7 @@ from dataclasses import replace
 from datetime import UTC, datetime
 from typing import Any, cast
 
+from mocapstudio.cleaning.model import Flag
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.take import Take
 from mocapstudio.review import protection
@@ -18,7 +19,7 @@ from mocapstudio.review.announcer import Announcer
 from mocapstudio.review.decisions import Stamp
 from mocapstudio.review.history import History, same
 from mocapstudio.review.model import QueueItem, Selection, Sitting
-from mocapstudio.review.queue import merge
+from mocapstudio.review.queue import Queue
 from mocapstudio.review.recorder import Nobody, Recorder
 from mocapstudio.review.references import TakeRecord
 from mocapstudio.review.replay import Results
@@ -54,6 +55,7 @@ class Core:
         self._context: tuple[Take, ...] = ()
         self._queue_of: tuple[str, object, object, tuple[QueueItem, ...]] = ("", (), (), ())
         self._saved = lasting(self._state)
+        self._queues: dict[str, tuple[tuple[Flag, ...], Queue]] = {}
         # Performers whose takes were not found; what was decided about them is kept.
         self.absent: tuple[TakeRecord, ...] = ()
         # A selected flag that was deferred, and the line of the queue it had left.
@@ -102,7 +104,12 @@ class Core:
     def queue(self, performer: str) -> tuple[QueueItem, ...]:
         """Return the queue of any performer, worst first."""
         decided = (d for d in self._history.present.decisions if d.performer == performer)
-        return merge(self._analyses.flags(performer), decided)
+        flags = self._analyses.flags(performer)
+        known, queue = self._queues.get(performer, (None, None))
+        if queue is None or known is not flags:
+            queue = Queue(flags)
+            self._queues[performer] = (flags, queue)
+        return queue.merged(decided)
 
     def _put(self, **changes: Any) -> None:
         """Change fields of the state, bring what follows from them up to date, tell listeners."""
