@@ -207,6 +207,10 @@ def test_the_middle_button_pans_and_home_shows_the_whole(view, document):
     assert document.state.frame == 0
     QTest.keyClick(view.plot, Qt.Key.Key_Home)
     assert view.time_range.is_whole
+    assert not view.whole.isVisible()
+    view.time_range.show(400, 600)
+    mouse.click(view.whole, QPointF(10, 8))
+    assert view.time_range.is_whole
 
 
 def test_z_and_a_double_click_zoom_to_the_selected_flag(view, document):

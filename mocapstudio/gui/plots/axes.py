@@ -108,7 +108,7 @@ class ValueAxis(pg.AxisItem):  # type: ignore[misc]
     def marks(self) -> list[tuple[float, str]]:
         """Values with their text, as many as the height has room for."""
         low, high = self.range
-        return value_ticks(low, high, int(max(2, self.boundingRect().height() // 30)))
+        return value_ticks(low, high, int(max(3, self.rect().height() // 24)))
 
     def paint(self, p: QPainter, _option: Any, _widget: Any) -> None:
         """Draw marks and labels."""

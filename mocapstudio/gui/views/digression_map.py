@@ -7,19 +7,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, Qt, QTimer
 from PySide6.QtGui import QPainter
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QStackedLayout, QToolTip, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QStackedLayout, QToolButton, QToolTip, QWidget
 
 from mocapstudio.cleaning.model import DigressionMap
 from mocapstudio.gui import theme as themes
 from mocapstudio.gui.document import DocumentBridge
 from mocapstudio.gui.plots import colours, map_readout
 from mocapstudio.gui.plots import map_drawing as drawing
+from mocapstudio.gui.plots.axes import TIME_AXIS_HEIGHT, small_font
 from mocapstudio.gui.plots.colour_bar import ColourBar
 from mocapstudio.gui.plots.layers import Layer, draw_trim
 from mocapstudio.gui.plots.pooling import PooledMap
 from mocapstudio.gui.plots.row_labels import RowLabels
 from mocapstudio.gui.plots.rows import Group, RowLayout, limb_groups
-from mocapstudio.gui.plots.time_plot import TimePlot
+from mocapstudio.gui.plots.time_plot import RIGHT_GUTTER, TimePlot
 from mocapstudio.gui.plots.time_range import TimeRange
 from mocapstudio.review.model import QueueItem
 
@@ -98,6 +99,14 @@ class DigressionMapView(QWidget):
         row.setSpacing(0)
         for part in (self.labels, self.plot, self.bar):
             row.addWidget(part, 1 if part is self.plot else 0)
+        self.whole = QToolButton(self.bar)
+        self.whole.setText("whole take")
+        self.whole.setToolTip("Show the whole take (Home)")
+        self.whole.setFont(small_font(10))
+        self.whole.setStyleSheet("padding: 0; font-size: 10px;")
+        self.whole.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.whole.setGeometry(4, 1, RIGHT_GUTTER - 10, TIME_AXIS_HEIGHT - 3)
+        self.whole.hide()
         self.empty = QLabel("Analyse a take to see its digression map")
         self.empty.setProperty("role", "hint")
         self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
@@ -120,6 +129,8 @@ class DigressionMapView(QWidget):
         self.plot.swept.connect(self._sweep)
         self.plot.hovered.connect(self._hover)
         self.plot.focus_wanted.connect(self.zoom_to_selection)
+        self.whole.clicked.connect(self.whole_take)
+        self.time_range.changed.connect(lambda: self.whole.setVisible(not self.time_range.is_whole))
         self.plot.plotItem.vb.sigResized.connect(lambda *_: self._arrange())
         self.labels.rows_clicked.connect(self._select_rows)
         self.bar.threshold_moved.connect(self._move_threshold)
