@@ -119,15 +119,16 @@ def cases(
         others = entries(data, foreign)
         around = [others[i] for i in rng.permutation(len(others))[: CONTEXT_TAKES[context]]]
     context_takes = tuple(read_some(around, CONTEXT_TAKES[context]))
+    takes: list[Take] = []
+    if context != "local":
+        takes = read_some(tested, count, context_takes[0]) if context_takes else []
+        if not takes:
+            raise MocapError(f"too few takes of one skeleton in the set {corpus!r}")
     if dirty_context:
         context_takes = tuple(corrupt(t, rng, DIRTY_A_MINUTE)[0] for t in context_takes)
     made: list[Case] = []
     for i in range(count):
-        clean, ignore = (
-            _joined(tested, i, rng)
-            if context == "local"
-            else (tested[i % len(tested)].read(), None)
-        )
+        clean, ignore = _joined(tested, i, rng) if not takes else (takes[i % len(takes)], None)
         case_rng = np.random.default_rng([seed, i, len(context_takes), len(corpus)])
         dirty, truths = corrupt(clean, case_rng, errors_per_minute, kinds, family=family)
         if truths and recurring:

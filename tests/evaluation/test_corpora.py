@@ -84,6 +84,17 @@ def test_the_context_never_holds_the_take(own: Path) -> None:
                 assert digests and case.clean.source.digest not in digests
 
 
+def test_takes_of_another_skeleton_stay_out(own: Path) -> None:
+    for k in range(20):
+        path = own / f"other_{k:02d}.bvh"
+        write_bvh(path, 70 + k, k)
+        path.write_text(path.read_text().replace("Spine", "Tail"))
+    for seed in range(4):
+        made = cases(own, "own", "small", seed, 6)
+        names = {t.skeleton.names for case in made for t in (case.clean, *case.context)}
+        assert len(names) == 1
+
+
 def test_what_is_too_short_is_passed_over_and_nothing_left_is_told(tmp_path: Path) -> None:
     write_bvh(tmp_path / "short.bvh", 5, 0.0)
     with pytest.raises(MocapError, match="shorter than a motion-word"):
