@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QMenu, QMenuBar, QPushButton, QToolButton, QWidget
 from mocapstudio.gui import icons
 from mocapstudio.gui.commands import COMMANDS, MENUS, SEPARATOR, Command
 from mocapstudio.gui.document import UiState
+from mocapstudio.motion.facing import ROOT_ROWS
 from mocapstudio.review.model import Verdict
 from mocapstudio.review.state import DocumentState
 
@@ -116,7 +117,7 @@ class Actions(QObject):
             "undo": state.can_undo is not None, "redo": state.can_redo is not None,
         }  # fmt: skip
         for k in range(6):
-            allowed[f"neighbour-{k}"] = item is not None
+            allowed[f"neighbour-{k}"] = item is not None and item.flag.joint not in ROOT_ROWS
         for name, enabled in allowed.items():
             self._actions[name].setEnabled(enabled)
         self._label("undo", state.can_undo)

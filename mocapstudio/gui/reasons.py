@@ -12,6 +12,7 @@ from mocapstudio.cleaning.model import Flag, Neighbour, Proposal
 from mocapstudio.gui.document import DocumentBridge, UiState
 from mocapstudio.gui.jobs import Jobs
 from mocapstudio.gui.trouble import Trouble, understand
+from mocapstudio.motion.facing import ROOT_ROWS
 from mocapstudio.motion.progress import Progress
 from mocapstudio.review.state import DocumentState
 
@@ -60,7 +61,8 @@ class Reasons(QObject):
 
     def choose(self, neighbour: int | None) -> None:
         """Preview a neighbour's motion as the proposal; the same again, or None: the best."""
-        if self._bridge.state.selected is None:
+        item = self._bridge.state.selected
+        if item is None or item.flag.joint in ROOT_ROWS:
             return
         known = self._current.neighbours
         if neighbour is not None and known is not None and neighbour >= len(known):

@@ -53,8 +53,17 @@ class Hands:
         """Look on until something is so."""
         self.qtbot.waitUntil(condition, timeout=int(seconds * 1000))
 
+    def shows(self, name: str) -> bool:
+        """Whether a visible widget has that name."""
+        try:
+            self.find(name)
+        except AssertionError:
+            return False
+        return True
+
     def click(self, name: str, modifier=NONE) -> None:
         """Click the middle of a widget."""
+        self.see(lambda: self.shows(name))
         widget = self.find(name)
         assert widget.isEnabled(), f"{name} is disabled"
         QTest.mouseClick(widget, LEFT, modifier, widget.rect().center())

@@ -31,7 +31,7 @@ def test_the_main_job(hands, generated, tmp_path):
     hands.see(lambda: hands.selected_rows() == [0])
     joint = hands.rows()[0][1]
     assert hands.text("inspector-joint") == joint
-    hands.see(lambda: "neighbour" in hands.text("inspector-why"))
+    hands.see(lambda: "nearest neighbour" in hands.text("inspector-why"))
 
     hands.press("A")
     hands.see(lambda: verdicts(hands)[0] == "accepted")

@@ -22,6 +22,7 @@ from mocapstudio.gui.inspector.neighbours import NeighbourList
 from mocapstudio.gui.queue.model import VERDICT_ICONS
 from mocapstudio.gui.reasons import Reason, Reasons
 from mocapstudio.gui.widgets.parts import ElidedLabel, Hint, label, panel
+from mocapstudio.motion.facing import ROOT_ROWS
 from mocapstudio.review.model import QueueItem, Verdict
 from mocapstudio.review.state import DocumentState
 
@@ -161,7 +162,9 @@ class FlagPage(QWidget):
             self._why.setText(why)
         near = reason.neighbours or ()
         note = _neighbours_note(reason, analysis is not None)
-        self._neighbours.show_neighbours(near, [self._when(one) for one in near], note)
+        times = [self._when(one) for one in near]
+        choosable = item.flag.joint not in ROOT_ROWS
+        self._neighbours.show_neighbours(near, times, note, choosable)
         proposal = state.proposals.get(item.flag.id)
         choice = self._bridge.ui.preview
         if choice is None and proposal is not None and proposal.donor in near:

@@ -18,18 +18,25 @@ _HEIGHT = 28
 class NeighbourButton(QAbstractButton):
     """One neighbour: its key, take, time and distance; checked while it is the proposal."""
 
-    def __init__(self, number: int, neighbour: Neighbour, when: str, share: float) -> None:
+    def __init__(
+        self, number: int, neighbour: Neighbour, when: str, share: float, choosable: bool
+    ) -> None:
         super().__init__()
         self._number, self._neighbour, self._when, self._share = number, neighbour, when, share
         self.setObjectName(f"neighbour-{number}")
         self.setCheckable(True)
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self.setCursor(Qt.CursorShape.PointingHandCursor)
+        self.setEnabled(choosable)
+        if choosable:
+            self.setCursor(Qt.CursorShape.PointingHandCursor)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setText(neighbour.take)
+        use = f"Click, or press {number}, to preview it as the proposal"
+        if not choosable:
+            use = "The path of the root is mended from its own frames, not from a neighbour"
         self.setToolTip(
-            f"{neighbour.take}, {when}\n{neighbour.distance:.1f}° root mean square joint angle"
-            f" from the flagged motion\nClick, or press {number}, to preview it as the proposal"
+            f"{neighbour.take}, from {when}\n{neighbour.distance:.1f}° root mean square joint angle"
+            f" from the flagged motion\n{use}"
         )
 
     def sizeHint(self) -> QSize:
@@ -43,7 +50,8 @@ class NeighbourButton(QAbstractButton):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         area = QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
         ground = now.selection if self.isChecked() else now.raised
-        edge = now.accent if self.isChecked() or self.underMouse() else now.border
+        lit = self.isChecked() or (self.isEnabled() and self.underMouse())
+        edge = now.accent if lit else now.border
         painter.setPen(QColor(edge))
         painter.setBrush(QColor(ground))
         painter.drawRoundedRect(area, 5, 5)
@@ -98,16 +106,22 @@ class NeighbourList(QWidget):
         self._shown: tuple[object, ...] = ()
 
     def show_neighbours(
-        self, neighbours: Sequence[Neighbour] | None, times: Sequence[str], note: str
+        self,
+        neighbours: Sequence[Neighbour],
+        times: Sequence[str],
+        note: str,
+        choosable: bool,
     ) -> None:
         """List the neighbours, or say `note` where there are none.
 
         Parameters
         ----------
         times
-            When each neighbour stands in its take, in words.
+            When each neighbour starts in its take, in words.
+        choosable
+            Whether a neighbour can be made the proposal.
         """
-        wanted = (tuple(neighbours or ()), tuple(times), note)
+        wanted = (tuple(neighbours), tuple(times), note, choosable)
         if wanted == self._shown:
             return
         self._shown = wanted
@@ -115,9 +129,9 @@ class NeighbourList(QWidget):
             self._column.removeWidget(button)
             button.deleteLater()
         self._buttons = []
-        largest = max((one.distance for one in neighbours or ()), default=0.0) or 1.0
-        for k, (one, when) in enumerate(zip(neighbours or (), times, strict=True)):
-            button = NeighbourButton(k + 1, one, when, one.distance / largest)
+        largest = max((one.distance for one in neighbours), default=0.0) or 1.0
+        for k, (one, when) in enumerate(zip(neighbours, times, strict=True)):
+            button = NeighbourButton(k + 1, one, when, one.distance / largest, choosable)
             button.clicked.connect(lambda _=False, k=k: self.chosen.emit(k))
             self._buttons.append(button)
             self._column.addWidget(button)
