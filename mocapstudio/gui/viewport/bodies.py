@@ -20,6 +20,7 @@ class Bodies:
         self.mesh = Mesh(lit=True)
         self._figures: tuple[Figure, ...] = ()
         self._parts: list[slice] = []
+        self._painted: list[NDArray[np.uint8] | None] = []
 
     def cast(self, figures: Sequence[Figure]) -> None:
         """Say which figures there are; the mesh is rebuilt only where they are others."""
@@ -31,6 +32,7 @@ class Bodies:
             self._parts.append(slice(corners, corners + figure.corners))
             triangles.append(figure.triangles + corners)
             corners += figure.corners
+        self._painted = [None] * len(figures)
         empty = np.zeros((0, 3), dtype=np.int64)
         self.mesh.reshape(corners, np.concatenate(triangles) if triangles else empty)
 
@@ -42,10 +44,15 @@ class Bodies:
         girth: float = 1.0,
         swell: Floats | None = None,
     ) -> None:
-        """Put one figure into a pose, with a colour a point; `changed` must follow."""
+        """Put one figure into a pose, with a colour a point; `changed` must follow.
+
+        The very array of colours that it was last painted with costs nothing.
+        """
         part, figure = self._parts[number], self._figures[number]
         self.mesh.points[part], self.mesh.normals[part] = figure.pose(points, girth, swell)
-        self.mesh.colours[part] = figure.colour(colours)
+        if self._painted[number] is not colours:
+            self._painted[number] = colours
+            self.mesh.colours[part] = figure.colour(colours)
 
     def hide(self, number: int) -> None:
         """Shrink a figure to nothing; `changed` must follow."""

@@ -9,7 +9,7 @@ from functools import partial
 
 import shiboken6
 from PySide6.QtCore import Qt, QTimer
-from PySide6.QtGui import QCloseEvent, QHideEvent, QShowEvent
+from PySide6.QtGui import QCloseEvent, QHideEvent, QOpenGLContext, QShowEvent
 from PySide6.QtWidgets import QWidget
 from pyvistaqt import QtInteractor
 
@@ -84,13 +84,20 @@ class Canvas(QtInteractor):
 
     def release(self) -> None:
         """Give back what OpenGL holds; showing the widget again brings it back."""
-        if self._ctx is not None and self.ren_win is not None:
+        if self._ctx is None or self.ren_win is None:
+            return
+        if shiboken6.isValid(self._moving):
             self._moving.stop()
+        if shiboken6.isValid(self._ctx):
             self._ctx.makeCurrent(self._surface)
-            self.ren_win.Finalize()
-            self.ren_win.SetReadyForRendering(False)
-            self._ctx.doneCurrent()
-            self._forget_context()  # type: ignore[no-untyped-call]
+        else:
+            # The window is being deleted, and its context frees everything by itself. VTK must
+            # not free the same numbers in the context of another window.
+            _let_go()
+        self.ren_win.Finalize()
+        self.ren_win.SetReadyForRendering(False)
+        _let_go()
+        self._forget_context()  # type: ignore[no-untyped-call]
 
     def showEvent(self, event: QShowEvent) -> None:
         """Begin again in the widget's context after `hideEvent`."""
@@ -112,6 +119,12 @@ def _release_all() -> None:
     for canvas in list(_open):
         if shiboken6.isValid(canvas):
             canvas.release()
+
+
+def _let_go() -> None:
+    current = QOpenGLContext.currentContext()
+    if current is not None:
+        current.doneCurrent()
 
 
 def _raise(error: Exception) -> None:

@@ -6,12 +6,15 @@ Only numpy here: which triangles there are, and where their corners lie for a po
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mocapstudio.gui.viewport.solids import RINGS, Detail, Floats, Indices, circle, sphere
 from mocapstudio.gui.viewport.world import Points
+
+_UPRIGHT = np.array([0, 1, 0], np.float32)
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,32 +96,45 @@ class Figure:
         shares = np.concatenate([shares, shares[self.middles].max(axis=1)])
         radius = self.ball_radius * shares[self.balls]
         balls = points[self.balls][:, None] + radius[:, None, None] * ball
-        thick = np.minimum(1.0, np.maximum(shares[self.starts], shares[self.ends]) / girth) * girth
-        bones, normals = self._lathe(points, self.rings * thick[:, None])
+        thick: Floats = np.minimum(girth, np.maximum(shares[self.starts], shares[self.ends]))
+        bones, normals = self._lathe(points, thick[:, None])
         ball_normals = np.broadcast_to(ball, balls.shape)
         return (
             np.concatenate([balls.reshape(-1, 3), bones]),
             np.concatenate([ball_normals.reshape(-1, 3), normals]),
         )
 
-    def _lathe(self, points: Points, rings: Floats) -> tuple[Floats, Floats]:
+    @cached_property
+    def _slope(self) -> Floats:
+        """(B, R): how fast a bone's radius grows along it, were the bone one metre long."""
+        steps = np.gradient(self.ring_place, axis=1)
+        slope: Floats = np.gradient(self.rings, axis=1) / steps
+        return slope
+
+    def _lathe(self, points: Points, thick: Floats) -> tuple[Floats, Floats]:
         start = points[self.starts]
         along = points[self.ends] - start
         length = np.linalg.norm(along, axis=1, keepdims=True)
-        axis = along / np.maximum(length, 1e-9)
+        # A bone that has lost its length in this frame still needs a direction.
+        axis = np.where(length > 1e-9, along / np.maximum(length, 1e-9), _UPRIGHT)
         # Any direction across will do; the one farthest from the axis is never degenerate.
         across = np.zeros_like(axis)
         across[np.arange(len(axis)), np.abs(axis).argmin(axis=1)] = 1.0
-        u = np.cross(axis, across)
+        u = _cross(axis, across)
         u /= np.maximum(np.linalg.norm(u, axis=1, keepdims=True), 1e-9)
         cosine, sine = circle(self.detail.sides)
-        round_about = cosine[:, None] * u[:, None] + sine[:, None] * np.cross(axis, u)[:, None]
+        round_about = cosine[:, None] * u[:, None] + sine[:, None] * _cross(axis, u)[:, None]
         middle = start[:, None] + self.ring_place[:, :, None] * along[:, None]
-        corners = middle[:, :, None] + rings[:, :, None, None] * round_about[:, None]
-        rise = np.gradient(rings, axis=1) / np.maximum(
-            np.gradient(self.ring_place, axis=1) * length, 1e-6
-        )
-        tilt = np.clip(rise, -1.5, 1.5)[:, :, None, None] * axis[:, None, None]
-        normals = round_about[:, None] - tilt
-        normals /= np.linalg.norm(normals, axis=3, keepdims=True)
+        corners = middle[:, :, None] + (self.rings * thick)[:, :, None, None] * round_about[:, None]
+        rise = np.clip(self._slope * thick / np.maximum(length, 1e-6), -1.5, 1.5)
+        upright = 1.0 / np.sqrt(1.0 + rise**2)
+        lean = (-rise * upright)[:, :, None, None] * axis[:, None, None]
+        normals = upright[:, :, None, None] * round_about[:, None] + lean
         return corners.reshape(-1, 3), normals.reshape(-1, 3)
+
+
+def _cross(a: Floats, b: Floats) -> Floats:
+    """Cross product of (B, 3), an eighth of `np.cross`'s time."""
+    x, y, z = a.T
+    u, v, w = b.T
+    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=1)

@@ -42,6 +42,7 @@ class Mesh:
             surface.SetDiffuse(0.86)
             surface.SetSpecular(0.16)
             surface.SetSpecularPower(24.0)
+            surface.BackfaceCullingOn()
         self.reshape(0, np.zeros((0, 3), dtype=np.int64))
 
     def reshape(self, corners: int, cells: NDArray[np.int64], channels: int = 3) -> None:

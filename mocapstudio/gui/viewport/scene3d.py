@@ -14,7 +14,7 @@ from mocapstudio.gui.viewport import floor, marks
 from mocapstudio.gui.viewport.bodies import Bodies
 from mocapstudio.gui.viewport.camera import VIEW_ANGLE, Turntable
 from mocapstudio.gui.viewport.cast import Part, Role
-from mocapstudio.gui.viewport.palette import Colour, Palette, mix, tint
+from mocapstudio.gui.viewport.palette import Palette, mix, tint
 from mocapstudio.gui.viewport.shaping import stature
 from mocapstudio.gui.viewport.solids import Floats
 from mocapstudio.gui.viewport.world import Points, WorldMotion
@@ -28,6 +28,8 @@ _TRAIL = 0.5
 _TRAIL_STEPS = 24
 _APART = 0.003
 _SAMPLES = 48
+# How stout a ghost is beside the performer: it must not hide what it is compared with.
+_GIRTH = {Part.ORIGINAL: 0.6, Part.PROPOSAL: 0.8, Part.NEIGHBOUR: 0.45}
 
 
 @dataclass(frozen=True)
@@ -74,6 +76,8 @@ class Scene3D:
         for mesh in (self._floor.mesh, self._marks.mesh, self._bodies.mesh):
             renderer.AddActor(mesh.actor)
         self._floor.mesh.actor.ForceTranslucentOn()
+        # Order-independent translucency is a pass over the whole picture; thin lines need none.
+        renderer.SetUseOIT(False)
         # Three actors: finding out what is out of sight costs more than drawing it.
         renderer.GetCullers().RemoveAllItems()
         renderer.RemoveAllLights()
@@ -93,12 +97,16 @@ class Scene3D:
     def cast(self, roles: Sequence[Role], palette: Palette) -> None:
         """Put other figures on stage, or colour them otherwise."""
         self._roles, self._palette = tuple(roles), palette
+        self._plain = [_plain_colours(role, palette) for role in roles]
         self._bodies.cast([role.figure for role in roles])
         self._renderer.SetBackground(*(c / 255 for c in palette.bottom))
         self._renderer.SetBackground2(*(c / 255 for c in palette.top))
         self._renderer.GradientBackgroundOn()
         if roles:
             self._lay_floor(palette)
+        else:
+            self._marks.show()
+        self._floor.mesh.actor.SetVisibility(bool(roles))
 
     def _lay_floor(self, palette: Palette) -> None:
         first = self._roles[0].motion
@@ -124,10 +132,9 @@ class Scene3D:
             if own is None:
                 self._bodies.hide(number)
             elif role.part is Part.RESULT:
-                self._bodies.pose(number, points, self._result_colours(look, len(points)))
+                self._bodies.pose(number, points, self._result_colours(look))
             elif role.part is Part.PARTNER:
-                pose = role.motion.points(own)
-                self._bodies.pose(number, pose, _plain(self._palette.partner, len(pose)))
+                self._bodies.pose(number, role.motion.points(own), self._plain[number])
             else:
                 self._pose_ghost(number, role, role.motion.points(own), points)
         self._bodies.changed()
@@ -143,37 +150,23 @@ class Scene3D:
         view.SetViewUp(*camera.basis()[1])
         view.SetClippingRange(*camera.clipping(self._radius))
 
-    def _result_colours(self, look: Look, count: int) -> NDArray[np.uint8]:
+    def _result_colours(self, look: Look) -> NDArray[np.uint8]:
         assert self._palette is not None
-        skeleton = self._roles[0].motion.take.skeleton
         if look.values is None:
-            return _plain(self._palette.body, count)
+            return self._plain[0]
+        skeleton = self._roles[0].motion.take.skeleton
         joints = tint(self._palette, look.values, look.threshold)
         return np.concatenate([joints, joints[skeleton.end_parents]])
 
     def _pose_ghost(self, number: int, role: Role, pose: Points, result: Points) -> None:
         assert self._palette is not None
-        colour, girth = self._ghost_look(role.part)
         apart = np.linalg.norm(pose - result, axis=1) > _APART * self.stature / 1.7
         if not apart.any():
             self._bodies.hide(number)
             return
-        strong = np.ones(len(pose), dtype=bool)
-        if role.turned:
-            strong = _moved_by(role)
-        dull = mix(colour, self._palette.bottom, 0.45)
-        colours = np.where(strong[:, None], colour, dull).astype(np.uint8)
-        swell: Floats = np.where(apart, np.where(strong, 1.0, 0.7), 0.0).astype(np.float32)
-        self._bodies.pose(number, pose, colours, girth, swell)
-
-    def _ghost_look(self, part: Part) -> tuple[Colour, float]:
-        assert self._palette is not None
-        looks = {
-            Part.ORIGINAL: (self._palette.original, 0.6),
-            Part.PROPOSAL: (self._palette.proposal, 0.8),
-            Part.NEIGHBOUR: (self._palette.neighbour, 0.45),
-        }
-        return looks[part]
+        size = np.where(_moved_by(role), 1.0, 0.7)
+        swell: Floats = np.where(apart, size, 0.0).astype(np.float32)
+        self._bodies.pose(number, pose, self._plain[number], _GIRTH[role.part], swell)
 
     def _mark(self, look: Look, camera: Turntable, points: Points) -> None:
         assert self._palette is not None
@@ -229,13 +222,24 @@ def floor_level(motion: WorldMotion, height: float) -> float:
     return 0.0 if abs(level) < 0.1 * height else level
 
 
-def _plain(colour: Colour, count: int) -> NDArray[np.uint8]:
-    return np.broadcast_to(np.array(colour, np.uint8), (count, 3))
+def _plain_colours(role: Role, palette: Palette) -> NDArray[np.uint8]:
+    """(J + E, 3): what a role is coloured with apart from the map; what only follows is duller."""
+    colour = {
+        Part.RESULT: palette.body,
+        Part.PARTNER: palette.partner,
+        Part.ORIGINAL: palette.original,
+        Part.PROPOSAL: palette.proposal,
+        Part.NEIGHBOUR: palette.neighbour,
+    }[role.part]
+    dull = mix(colour, palette.bottom, 0.45)
+    return np.where(_moved_by(role)[:, None], colour, dull).astype(np.uint8)
 
 
 def _moved_by(role: Role) -> NDArray[np.bool_]:
-    """(J + E,): points at the far ends of the bones that the role's own joints turn."""
+    """(J + E,): far ends of the bones that the role's own joints turn; all, if all may turn."""
     skeleton = role.motion.take.skeleton
+    if not role.turned:
+        return np.ones(len(skeleton) + len(skeleton.end_parents), dtype=bool)
     turned = np.array([name in role.turned for name in skeleton.names])
     parents = np.concatenate([skeleton.parents, skeleton.end_parents])
     moved: NDArray[np.bool_] = (parents >= 0) & turned[parents]
