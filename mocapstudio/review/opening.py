@@ -118,11 +118,10 @@ class Opening:
                 performers.append(performer)
         document.absent = tuple(absent)
         scene = Scene(tuple(performers))
-        here = {p.id for p in performers}
         document.restore(
             scene,
             self._history,
-            {p: tuple(map(unpack_flag, f)) for p, f in self._record.flags.items() if p in here},
+            {p: tuple(map(unpack_flag, flags)) for p, flags in self._record.flags.items()},
             self._record.choices,
             context=self._context(),
             parameters=self._parameters(),

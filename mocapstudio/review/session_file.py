@@ -101,6 +101,7 @@ def load(path: Path | str, relocate: Relocate | None = None, author: str | None 
 def _recorded(document: Document, folder: Path) -> tuple[SessionRecord, Arrays]:
     state, arrays = document.state, Arrays()
     performers = state.scene.performers
+    ids = [p.id for p in performers] + [absent.id for absent in document.absent]
     span = state.selection.span
     record = SessionRecord(
         FORMAT,
@@ -120,8 +121,8 @@ def _recorded(document: Document, folder: Path) -> tuple[SessionRecord, Arrays]:
         joints=tuple(sorted(state.selection.joints)),
         span=span and (int(span[0]), int(span[1])),
         flag=state.selection.flag,
-        flags={p.id: tuple(map(pack_flag, document.flags(p.id))) for p in performers},
-        choices={p.id: dict(document.choices(p.id)) for p in performers},
+        flags={one: tuple(map(pack_flag, document.flags(one))) for one in ids},
+        choices={one: dict(document.choices(one)) for one in ids},
     )
     return record, arrays
 

@@ -133,6 +133,7 @@ def test_what_was_decided_about_a_missing_take_is_kept(tmp_path: Path) -> None:
     session_file.save(loaded, path)
     hidden.rename(tmp_path / "walk.bvh")
     again = session_file.load(path)
+    assert again.queue("walk") == document.queue("walk")
     assert np.array_equal(again.result("walk").rotations, document.result("walk").rotations)
     assert again.state.sitting.decisions == document.state.sitting.decisions
 
