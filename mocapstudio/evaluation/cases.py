@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
@@ -12,7 +12,7 @@ import numpy as np
 from mocapstudio.cleaning.model import Kind
 from mocapstudio.evaluation.corpora import Entry, Split, entries, join, read_some
 from mocapstudio.evaluation.corpora import split as half
-from mocapstudio.evaluation.injection import ERRORS_A_MINUTE, KINDS, corrupt, recur
+from mocapstudio.evaluation.injection import ERRORS_A_MINUTE, KINDS, corrupt, inject_each, recur
 from mocapstudio.evaluation.shapes import Family
 from mocapstudio.evaluation.truth import Mask, Truth, analysed_rows, erroneous
 from mocapstudio.motion.errors import MocapError
@@ -100,7 +100,8 @@ def cases(
     split
         Which half.
     kinds, errors_per_minute, family
-        See `injection.corrupt`; at 0 errors a minute the cases are negative controls.
+        See `injection.corrupt`; kinds come in turn; at 0 errors a minute the cases are negative
+        controls.
     dirty_context
         Whether about 5 % of the context's frames are erroneous too.
     foreign
@@ -127,15 +128,25 @@ def cases(
     if dirty_context:
         context_takes = tuple(corrupt(t, rng, DIRTY_A_MINUTE)[0] for t in context_takes)
     made: list[Case] = []
+    # Dealt out evenly instead of drawn, so that few cases already hold their share of errors.
+    due, in_turn = 0.5, _in_turn(kinds, rng)
     for i in range(count):
         clean, ignore = _joined(tested, i, rng) if not takes else (takes[i % len(takes)], None)
         case_rng = np.random.default_rng([seed, i, len(context_takes), len(corpus)])
-        dirty, truths = corrupt(clean, case_rng, errors_per_minute, kinds, family=family)
+        due += errors_per_minute * clean.duration / 60.0
+        mine = [next(in_turn) for _ in range(int(due))]
+        due -= len(mine)
+        dirty, truths = inject_each(clean, mine, case_rng, family=family)
         if truths and recurring:
             dirty, again = recur(dirty, truths[0], case_rng, recurring, avoid=truths[1:])
             truths = tuple(sorted((*again, *truths[1:]), key=lambda t: t.start))
         made.append(Case(dirty, clean, truths, context_takes, ignore))
     return made
+
+
+def _in_turn(kinds: Sequence[Kind], rng: np.random.Generator) -> Iterator[Kind]:
+    while True:
+        yield from (kinds[i] for i in rng.permutation(len(kinds)))
 
 
 def _chosen(

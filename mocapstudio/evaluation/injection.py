@@ -33,6 +33,7 @@ __all__ = [
     "corrupt",
     "erroneous",
     "inject",
+    "inject_each",
     "recur",
 ]
 
@@ -150,9 +151,25 @@ def corrupt(
     """
     expected = errors_per_minute * take.duration / 60.0
     count = int(expected) + int(rng.random() < expected % 1.0)
+    drawn = [kinds[int(rng.integers(len(kinds)))] for _ in range(count)]
+    return inject_each(take, drawn, rng, family=family)
+
+
+def inject_each(
+    take: Take,
+    kinds: Sequence[Kind],
+    rng: np.random.Generator,
+    *,
+    family: Family = "standard",
+) -> tuple[Take, tuple[Truth, ...]]:
+    """Inject one error of each of `kinds`, as far as there is room, half a second apart.
+
+    Returns
+    -------
+    The spoilt take and its truths in order of time.
+    """
     spoilt, truths = take, list[Truth]()
-    for _ in range(count):
-        kind = kinds[int(rng.integers(len(kinds)))]
+    for kind in kinds:
         try:
             avoid = [(t.start, t.end) for t in truths]
             spoilt, truth = inject(spoilt, kind, rng, family=family, avoid=avoid)

@@ -84,6 +84,17 @@ def test_the_context_never_holds_the_take(own: Path) -> None:
                 assert digests and case.clean.source.digest not in digests
 
 
+def test_errors_are_dealt_out_evenly(data: Path) -> None:
+    made = cases(data, "locomotion", "local", count=9, errors_per_minute=6.0)
+    minutes = sum(case.clean.duration for case in made) / 60
+    truths = [truth for case in made for truth in case.truths]
+    assert abs(len(truths) - 6.0 * minutes) <= 2
+    assert len({truth.kind for truth in truths[:14]}) >= 13
+    again = cases(data, "locomotion", "local", count=9, errors_per_minute=6.0)
+    assert [case.truths for case in again] == [case.truths for case in made]
+    assert not any(c.truths for c in cases(data, "locomotion", "local", errors_per_minute=0.0))
+
+
 def test_takes_of_another_skeleton_stay_out(own: Path) -> None:
     for k in range(20):
         path = own / f"other_{k:02d}.bvh"
