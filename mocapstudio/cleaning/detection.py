@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 
 from mocapstudio.cleaning import calibration, own_rate, root
 from mocapstudio.cleaning.analysis import Analysis
+from mocapstudio.cleaning.decision.model import Decision
+from mocapstudio.cleaning.decision.surroundings import anatomy_of, surroundings
 from mocapstudio.cleaning.flags import find_flags
 from mocapstudio.cleaning.mean_texture import departure, mean_texture, paper_map
 from mocapstudio.cleaning.model import DigressionMap
@@ -23,7 +25,14 @@ from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.facing import ROOT_HEADING, ROOT_POSITION, ROOT_ROWS
 from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.take import Take
-from mocapstudio.similarity.texture import MotionTexture, comparable_joints, motion_texture
+from mocapstudio.similarity.texture import (
+    BodyMotion,
+    MotionTexture,
+    body_motion,
+    comparable_joints,
+    motion_texture,
+    texture_of,
+)
 from mocapstudio.similarity.words import Corpus, WordShape, find_neighbours, trim_count
 
 F32 = NDArray[np.float32]
@@ -36,6 +45,7 @@ def detect(
     context: Sequence[Take] = (),
     parameters: DetectionParameters = DEFAULTS,
     *,
+    decision: Decision | None = None,
     normal: Sequence[Declared] = (),
     protected: Sequence[Declared] = (),
 ) -> Generator[Progress, None, Analysis]:
@@ -49,6 +59,9 @@ def detect(
         Other takes of the same skeleton, joints matched by name; the take itself is searched too.
     parameters
         See `DetectionParameters`.
+    decision
+        What `decision.store.prepare` learnt from the context; None for the plain map, which
+        needs no preparation. The paper's mode never uses it.
     normal
         Rows x spans that somebody called correct: they are never flagged.
     protected
@@ -72,8 +85,9 @@ def detect(
     yield Progress(0.0, "sampling textures")
     joints = comparable_joints(take, context)
     shape = WordShape(parameters.source_word, parameters.hop, parameters.target_word)
-    corpus = Corpus.of([motion_texture(one, joints) for one in (take, *context)])
-    texture = corpus.textures[0]
+    motion = body_motion(take, joints)
+    texture = texture_of(motion)
+    corpus = Corpus.of([texture, *(motion_texture(one, joints) for one in context)])
     yield Progress(0.1, "searching neighbours")
     trim = trim_count(len(joints), whole_body=True)
     neighbours = find_neighbours(texture, corpus, parameters.neighbours, trim, shape)
@@ -82,10 +96,13 @@ def detect(
     values = paper_map(away) if parameters.mode == PAPER else calibration.calibrated(away)
     digression = _joint_rows(take, joints, texture, values, np.rad2deg(away))
     yield Progress(0.7, "looking for pops")
-    rates = own_rate.of_take(take, joints)
+    rates = own_rate.of_motion(motion).placed(take.span[0], take.frames)
     if parameters.mode != PAPER:
         height = root.height_departure(texture, corpus, neighbours, shape)
         digression = _with_root_and_pops(take, digression, texture, height, rates)
+    if parameters.mode != PAPER and decision is not None and decision.joints == joints:
+        yield Progress(0.75, "deciding")
+        digression = _decided(take, motion, corpus, decision, digression)
     digression = _without(digression, [*normal, *protected])
     yield Progress(0.95, "raising flags")
     return Analysis(
@@ -139,6 +156,23 @@ def _with_root_and_pops(
     return DigressionMap(
         digression.rows, np.maximum(values, calibration.exceeding(sharp)), residuals
     )
+
+
+def _decided(
+    take: Take,
+    motion: BodyMotion,
+    corpus: Corpus,
+    decision: Decision,
+    plain: DigressionMap,
+) -> DigressionMap:
+    """Let the learnt decision draw the map; the plain residuals of the root rows stay."""
+    texture, *others = corpus.textures
+    limb = anatomy_of(take.skeleton, decision.joints).limb
+    around = surroundings(others, texture, limb)
+    probability, degrees = decision.probabilities(motion, around)
+    residuals = plain.residuals.copy()
+    residuals[:, : len(decision.joints)] = _at_own_rate(take, texture, degrees)
+    return DigressionMap(plain.rows, _at_own_rate(take, texture, probability), residuals)
 
 
 def _without(digression: DigressionMap, excepted: Sequence[Declared]) -> DigressionMap:

@@ -6,16 +6,14 @@ around it, and its departure is compared with what is usual for that row in this
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mocapstudio.motion import rotations as rot
-from mocapstudio.motion.facing import hips_world, split_heading
-from mocapstudio.motion.take import Take
-from mocapstudio.motion.topology import topology
+from mocapstudio.similarity.texture import BodyMotion
 
 Array = NDArray[np.float64]
 
@@ -43,22 +41,20 @@ class OwnRate:
     pops: NDArray[np.float32]
     jitter: NDArray[np.float32]
 
+    def placed(self, start: int, frames: int) -> OwnRate:
+        """Lay a trimmed span into its take of so many frames; 0 outside."""
+        lead, tail = start, frames - start - len(self.pops)
+        around = ((lead, tail), (0, 0))
+        return OwnRate(np.pad(self.pops, around), np.pad(self.jitter, around))
 
-def of_take(take: Take, joints: Sequence[str]) -> OwnRate:
+
+def of_motion(motion: BodyMotion) -> OwnRate:
     """Find pops and jitter of joints and of the two root rows, which come last."""
-    rate, columns = float(take.rate), [take.skeleton.index[name] for name in joints]
-    rotations = take.rotations[:, columns]
-    heading, tilt = split_heading(take)
-    hips = topology(take.skeleton).hips
-    if hips in columns:
-        rotations = rotations.copy()
-        rotations[:, columns.index(hips)] = rot.continuous(tilt)
-    turns = rot.about_axis(1, heading)[:, None]
-    position, _ = hips_world(take)
+    turns = rot.continuous(rot.about_axis(1, motion.heading)[:, None])
     parts = [
-        of_rotations(rotations, rate),
-        of_positions(position[:, None], rate),
-        of_rotations(rot.continuous(turns), rate),
+        of_rotations(motion.rotations, motion.rate),
+        of_positions(motion.position[:, None], motion.rate),
+        of_rotations(turns, motion.rate),
     ]
     return OwnRate(
         np.hstack([part.pops for part in parts]), np.hstack([part.jitter for part in parts])

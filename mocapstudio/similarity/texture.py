@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,27 +62,40 @@ class MotionTexture:
         return self.start + position * self.frames_each
 
 
-def motion_texture(take: Take, joints: Sequence[str]) -> MotionTexture:
-    """Sample the trimmed span of a take at 24 fps and remove the facing direction of its hips.
+@dataclass(frozen=True, eq=False)
+class BodyMotion:
+    """The trimmed span of a take at its own rate: body apart from its place in the world.
 
     Parameters
     ----------
-    take
-        Any rate.
     joints
-        Names of the joints to compare; all must exist in the take.
-
-    Raises
-    ------
-    MocapError
-        If the trimmed span is shorter than two frames at 24 fps.
+        Names of the m joints.
+    rotations
+        (F, m, 4) local rotations, sign-continuous; of the hips the rotation without heading.
+    heading
+        (F,) radians about +Y, unwrapped; 0 faces +Z.
+    position
+        (F, 3) metres: the hips in the world.
+    rate
+        Frames a second.
+    start
+        The take's frame that is the first here.
     """
+
+    joints: tuple[str, ...]
+    rotations: NDArray[np.float64]
+    heading: NDArray[np.float64]
+    position: NDArray[np.float64]
+    rate: float
+    start: int
+
+    def __len__(self) -> int:
+        return len(self.rotations)
+
+
+def body_motion(take: Take, joints: Sequence[str]) -> BodyMotion:
+    """Take the body's motion and its place apart; every joint must exist in the take."""
     first, last = take.span
-    each = float(take.rate) / TEXTURE_RATE
-    count = int((last - 1 - first) / each + 1e-6) + 1
-    if count < 2:
-        raise MocapError(f"{take.name}: {last - first} frames are too short to analyse")
-    at = np.arange(count, dtype=np.float64) * each
     heading, tilt = split_heading(take, first, last)
     position, _ = hips_world(take, first, last)
     columns = [take.skeleton.index[name] for name in joints]
@@ -90,21 +103,52 @@ def motion_texture(take: Take, joints: Sequence[str]) -> MotionTexture:
     hips = topology(take.skeleton).hips
     if hips in columns:
         local = local.copy()
-        local[:, columns.index(hips)] = tilt
-    quaternions = rot.continuous(_sample_rotations(local, at))
-    heading, position = _sample(heading, at), _sample(position, at)
+        local[:, columns.index(hips)] = rot.continuous(tilt)
+    return BodyMotion(tuple(joints), local, heading, position, float(take.rate), first)
+
+
+def texture_of(motion: BodyMotion) -> MotionTexture:
+    """Sample a body's motion at 24 fps.
+
+    Raises
+    ------
+    MocapError
+        If it is shorter than two frames at 24 fps.
+    """
+    each = motion.rate / TEXTURE_RATE
+    count = int((len(motion) - 1) / each + 1e-6) + 1
+    if count < 2:
+        raise MocapError(f"{len(motion)} frames are too short to analyse")
+    at = np.arange(count, dtype=np.float64) * each
+    quaternions = rot.continuous(_sample_rotations(motion.rotations, at))
+    heading, position = _sample(motion.heading, at), _sample(motion.position, at)
     velocity = np.gradient(position, axis=0) * TEXTURE_RATE
     sine, cosine = np.sin(heading), np.cos(heading)
     forward = velocity[:, 0] * sine + velocity[:, 2] * cosine
     sideways = velocity[:, 0] * cosine - velocity[:, 2] * sine
     return MotionTexture(
-        tuple(joints),
+        motion.joints,
         np.ascontiguousarray(quaternions, dtype=np.float32),
         np.stack([forward, sideways, position[:, 1]], axis=-1).astype(np.float32),
         (np.gradient(heading) * TEXTURE_RATE).astype(np.float32),
-        first,
+        motion.start,
         each,
     )
+
+
+@lru_cache(maxsize=256)
+def motion_texture(take: Take, joints: tuple[str, ...]) -> MotionTexture:
+    """Sample the trimmed span of a take at 24 fps and remove the facing direction of its hips.
+
+    Raises
+    ------
+    MocapError
+        If the trimmed span is shorter than two frames at 24 fps.
+    """
+    try:
+        return texture_of(body_motion(take, joints))
+    except MocapError as error:
+        raise MocapError(f"{take.name}: {error}") from None
 
 
 def comparable_joints(take: Take, context: Sequence[Take]) -> tuple[str, ...]:

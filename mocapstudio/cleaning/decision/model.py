@@ -1,0 +1,108 @@
+"""The learnt decision: what is known of a context, and the trees learnt from it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapstudio.cleaning import own_rate
+from mocapstudio.cleaning.decision.features import COLUMN, Surroundings, features
+from mocapstudio.cleaning.decision.forest import Forest
+from mocapstudio.cleaning.decision.matching import LEAST_FRAMES, Matches, match
+from mocapstudio.cleaning.decision.root_features import root_features
+from mocapstudio.cleaning.decision.spans import judged
+from mocapstudio.cleaning.own_rate import OwnRate
+from mocapstudio.similarity.texture import BodyMotion, MotionTexture, texture_of
+
+F32 = NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False)
+class Decision:
+    """What was learnt from a context; it serves any take that is compared with the same joints.
+
+    Parameters
+    ----------
+    joints
+        Names of the m joints.
+    usual
+        (5, m) what is usual for clean takes, see `features.USUAL`.
+    forest, root_forest
+        Of the joints and of the two root rows, frame by frame.
+    span_forest
+        Of candidate spans.
+    """
+
+    joints: tuple[str, ...]
+    usual: F32
+    forest: Forest
+    root_forest: Forest
+    span_forest: Forest
+
+    def probabilities(self, motion: BodyMotion, around: Surroundings) -> tuple[F32, F32]:
+        """Decide about every row and frame of a motion at 24 fps.
+
+        Parameters
+        ----------
+        motion
+            Of the same joints.
+        around
+            What it is compared with, without itself.
+
+        Returns
+        -------
+        probability
+            (S, m + 2) that the row is erroneous: joints, root position, root heading.
+        residual
+            (S, m) degrees to the mean of the neighbours that were found without the limb.
+        """
+        seen = examine(motion, replace(around, usual=self.usual))
+        frames, joints = len(texture_of(motion)), len(self.joints)
+        if seen is None:
+            return np.zeros((frames, joints + 2), np.float32), np.zeros(
+                (frames, joints), np.float32
+            )
+        first = np.hstack(
+            [self.forest.probability(seen.joints), self.root_forest.probability(seen.root)]
+        )
+        probability = judged(first, seen.joints, seen.root, around.limb, self.span_forest)
+        name = "context mean" if len(around.textures) else "own mean"
+        return probability, np.nan_to_num(seen.joints[..., COLUMN[name]])
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """Features of one motion: (S, m, .) of joints and (S, 2, .) of the root rows."""
+
+    joints: F32
+    root: F32
+    matches: Matches
+
+
+def examine(motion: BodyMotion, around: Surroundings, barred: Sequence[int] = ()) -> Seen | None:
+    """Compute all features of a motion; None where it is too short for a window."""
+    texture = texture_of(motion)
+    if len(texture) < LEAST_FRAMES:
+        return None
+    rates = pooled(own_rate.of_motion(motion), texture)
+    matches = match(texture, around.textures, around.limb, barred)
+    return Seen(
+        features(texture, around, matches, rates),
+        root_features(texture, list(around.textures), matches, rates),
+        matches,
+    )
+
+
+def pooled(rates: OwnRate, texture: MotionTexture) -> OwnRate:
+    """Highest pops and jitter of the own frames that are nearest to each 24 fps frame."""
+    return OwnRate(pool(rates.pops, texture), pool(rates.jitter, texture))
+
+
+def pool(values: NDArray[np.float32], texture: MotionTexture) -> NDArray[np.float32]:
+    """Largest of (F, n) values at the own rate around each texture frame, (S, n)."""
+    edges = np.round((np.arange(len(texture)) - 0.5) * texture.frames_each).astype(np.int64)
+    edges = np.clip(edges, 0, len(values) - 1)
+    return np.asarray(np.maximum.reduceat(values, edges, axis=0))

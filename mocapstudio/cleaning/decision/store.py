@@ -1,0 +1,113 @@
+"""Learnt decisions kept on disk, named by the content that they were learnt from."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import tempfile
+import zipfile
+from collections.abc import Generator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import platformdirs
+
+from mocapstudio.cleaning.decision.forest import Forest
+from mocapstudio.cleaning.decision.model import Decision
+from mocapstudio.cleaning.decision.training import learn
+from mocapstudio.motion.progress import Progress
+from mocapstudio.motion.take import Take
+from mocapstudio.similarity.texture import comparable_joints
+
+_VERSION = 1
+_MOST_KEPT = 64
+
+
+def prepare(
+    context: Sequence[Take], folder: Path | None = None
+) -> Generator[Progress, None, Decision]:
+    """Return the decision learnt from a context: from the cache, or learnt now and kept.
+
+    Parameters
+    ----------
+    context
+        Takes of one skeleton; a single one is compared with itself.
+    folder
+        Where decisions are kept, or None for the user's cache.
+
+    Raises
+    ------
+    MocapError
+        If there is nothing to learn from.
+    """
+    joints = comparable_joints(context[0], context[1:])
+    path = (folder or default_folder()) / f"{key(context, joints)}.npz"
+    known = load(path)
+    if known is not None:
+        yield Progress(1.0, "context known")
+        return known
+    decision = yield from learn(context, joints)
+    # A cache that cannot be written costs time, nothing else.
+    with contextlib.suppress(OSError):
+        save(decision, path)
+        _forget_oldest(path.parent)
+    return decision
+
+
+def default_folder() -> Path:
+    """Folder of learnt decisions in the user's cache."""
+    return Path(platformdirs.user_cache_dir("mocapstudio", appauthor=False)) / "decisions"
+
+
+def key(context: Sequence[Take], joints: Sequence[str]) -> str:
+    """Name of a decision: a digest of motions (in any order), joints and version."""
+    digests = sorted(_digest(take) for take in context)
+    text = "\n".join([str(_VERSION), *joints, *digests])
+    return hashlib.sha256(text.encode()).hexdigest()[:32]
+
+
+def _digest(take: Take) -> str:
+    found = hashlib.sha256(repr((take.rate, take.span)).encode())
+    found.update(np.ascontiguousarray(take.rotations, dtype=np.float32).tobytes())
+    found.update(np.ascontiguousarray(take.translations, dtype=np.float32).tobytes())
+    return found.hexdigest()
+
+
+def save(decision: Decision, path: Path) -> None:
+    """Write a decision, in one piece or not at all."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(dir=path.parent, suffix=".part")
+    try:
+        with os.fdopen(handle, "wb") as out:
+            arrays: dict[str, Any] = {"joints": np.array(decision.joints), "usual": decision.usual}
+            arrays |= decision.forest.arrays("joint ")
+            arrays |= decision.root_forest.arrays("root ")
+            arrays |= decision.span_forest.arrays("span ")
+            np.savez_compressed(out, **arrays)
+        Path(name).replace(path)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise
+
+
+def load(path: Path) -> Decision | None:
+    """Read a decision; None where there is none, or where the file is damaged."""
+    try:
+        with np.load(path, allow_pickle=False) as arrays:
+            return Decision(
+                tuple(str(name) for name in arrays["joints"]),
+                arrays["usual"],
+                Forest.from_arrays(arrays, "joint "),
+                Forest.from_arrays(arrays, "root "),
+                Forest.from_arrays(arrays, "span "),
+            )
+    except (OSError, KeyError, ValueError, zipfile.BadZipFile):
+        return None
+
+
+def _forget_oldest(folder: Path) -> None:
+    kept = sorted(folder.glob("*.npz"), key=lambda p: p.stat().st_mtime, reverse=True)
+    for old in kept[_MOST_KEPT:]:
+        old.unlink(missing_ok=True)

@@ -1,0 +1,237 @@
+"""Learning the decision from a context, top to bottom.
+
+1. Every take of the context is compared with the others: what residual is usual for a joint;
+2. errors are put into its takes, again and again, half of the time with the nearest takes
+left out, so that novelty is learnt as normal; 3. boosted trees learn to tell them apart, frame by
+frame; 4. smaller ones judge the spans that these raise, on takes they did not learn from.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapstudio.cleaning.decision.features import COLUMN, USUAL, Surroundings
+from mocapstudio.cleaning.decision.forest import Forest
+from mocapstudio.cleaning.decision.matching import LEAST_FRAMES, nearest_takes
+from mocapstudio.cleaning.decision.model import Decision, Seen, examine, pool
+from mocapstudio.cleaning.decision.spans import candidates, labels_of, span_features
+from mocapstudio.cleaning.decision.spoiling import Anatomy, spoil
+from mocapstudio.cleaning.decision.surroundings import anatomy_of, mean_pose, moments_of
+from mocapstudio.motion.errors import MocapError
+from mocapstudio.motion.progress import Progress
+from mocapstudio.motion.take import Take
+from mocapstudio.similarity.texture import (
+    BodyMotion,
+    MotionTexture,
+    body_motion,
+    comparable_joints,
+    texture_of,
+)
+
+F32 = NDArray[np.float32]
+
+_FRAMES_WANTED = 11_000
+_VARIANTS = (2, 10)
+_NEGATIVES = 40_000
+_LEAST_USUAL = np.array([2.0, 2.0, 2.0, 0.1, 0.1], dtype=np.float32)
+_MOST_DROPPED = 10
+
+
+@dataclass(frozen=True, eq=False)
+class _Known:
+    """One take of the context and what it is compared with."""
+
+    motion: BodyMotion
+    texture: MotionTexture
+    around: Surroundings
+
+
+@dataclass(frozen=True, eq=False)
+class _Example:
+    """One spoilt take: features and labels, and which half of the takes it belongs to."""
+
+    joints: F32
+    root: F32
+    labels: NDArray[np.int8]
+    half: int
+
+
+@dataclass(frozen=True, eq=False)
+class _Judge:
+    joints: Forest
+    root: Forest
+
+
+@dataclass(frozen=True, eq=False)
+class _Rows:
+    """Rows of features with sure labels."""
+
+    rows: F32
+    labels: NDArray[np.int8]
+
+    @staticmethod
+    def of(parts: Sequence[tuple[F32, NDArray[np.int8]]]) -> _Rows:
+        rows = np.concatenate([f.reshape(-1, f.shape[-1]) for f, _ in parts])
+        labels = np.concatenate([label.ravel() for _, label in parts])
+        sure = labels >= 0
+        return _Rows(rows[sure], labels[sure])
+
+
+def learn(
+    context: Sequence[Take], joints: Sequence[str] | None = None, seed: int = 0
+) -> Generator[Progress, None, Decision]:
+    """Learn a decision from the takes of a context.
+
+    Parameters
+    ----------
+    context
+        Takes of one skeleton, presumably mostly clean. A single one is compared with itself.
+    joints
+        Names of the joints to compare, or None for those that all takes have.
+    seed
+        Of the errors and of the subsampling.
+
+    Raises
+    ------
+    MocapError
+        If no take is as long as a window.
+    """
+    yield Progress(0.0, "preparing the context")
+    names = tuple(joints) if joints is not None else comparable_joints(context[0], context[1:])
+    anatomy = anatomy_of(context[0].skeleton, names)
+    motions = [body_motion(take, names) for take in context]
+    motions = [one for one in motions if len(texture_of(one)) >= LEAST_FRAMES]
+    if not motions:
+        raise MocapError("no take of the context is long enough to learn from")
+    takes = _each_without_itself(motions, anatomy)
+    usual = yield from _usual(takes)
+    takes = [replace(one, around=replace(one.around, usual=usual)) for one in takes]
+    rng = np.random.default_rng(seed)
+    examples = yield from _spoilt_examples(takes, anatomy, rng)
+    yield Progress(0.7, "learning the decision")
+    halves = [[one for one in examples if one.half == half] for half in (0, 1)]
+    judges = []
+    for half in (0, 1):
+        judges.append(_Judge(*_fitted(halves[half] or examples, rng)))
+        yield Progress(0.8 + 0.05 * half, "learning the decision")
+    spans = _span_examples(examples, judges, anatomy)
+    yield Progress(0.9, "learning the decision")
+    forest, root_forest = _fitted(examples, rng)
+    return Decision(names, usual, forest, root_forest, _fit(spans, rng, small=True))
+
+
+def _each_without_itself(motions: Sequence[BodyMotion], anatomy: Anatomy) -> list[_Known]:
+    textures = [texture_of(one) for one in motions]
+    centre = mean_pose(textures)
+    moments = [moments_of(one, centre) for one in textures]
+    total = moments[0]
+    for one in moments[1:]:
+        total = total + one
+    takes = []
+    for i, (motion, texture) in enumerate(zip(motions, textures, strict=True)):
+        others = [other for k, other in enumerate(textures) if k != i]
+        rest = total - moments[i] if others else total
+        takes.append(_Known(motion, texture, Surroundings(others, rest, centre, anatomy.limb)))
+    return takes
+
+
+def _usual(takes: Sequence[_Known]) -> Generator[Progress, None, F32]:
+    """(5, m) 98 % quantiles of clean takes' own residuals, every take without itself."""
+    columns = [COLUMN[f"{name} usual"] for name in USUAL]
+    found = []
+    for i, one in enumerate(takes):
+        yield Progress(0.05 + 0.1 * i / len(takes), "measuring what is usual")
+        seen = examine(one.motion, one.around)
+        if seen is not None:
+            found.append(seen.joints[..., columns])
+    quantiles = np.nanquantile(np.concatenate(found), 0.98, axis=0).T
+    return np.asarray(np.maximum(np.nan_to_num(quantiles), _LEAST_USUAL[:, None]), dtype=np.float32)
+
+
+def _spoilt_examples(
+    takes: Sequence[_Known], anatomy: Anatomy, rng: np.random.Generator
+) -> Generator[Progress, None, list[_Example]]:
+    frames = sum(len(one.texture) for one in takes)
+    variants = int(np.clip(round(_FRAMES_WANTED / frames), *_VARIANTS))
+    examples = []
+    for n in range(variants * len(takes)):
+        yield Progress(0.15 + 0.55 * n / (variants * len(takes)), "making examples of errors")
+        one, variant = takes[n % len(takes)], n // len(takes)
+        motion, label = spoil(one.motion, anatomy, rng)
+        seen = examine(motion, one.around)
+        if seen is None:
+            continue
+        if variant % 2 and len(one.around.textures) > 2:
+            seen = _without_nearest(motion, one, seen, rng)
+        half = (n % len(takes) if len(takes) > 1 else variant) % 2
+        labels = _pooled_labels(label, one.texture)
+        examples.append(_Example(seen.joints, seen.root, labels, half))
+    return examples
+
+
+def _without_nearest(motion: BodyMotion, one: _Known, seen: Seen, rng: np.random.Generator) -> Seen:
+    most = min(_MOST_DROPPED, len(one.around.textures) - 1)
+    barred = nearest_takes(seen.matches)[: int(rng.integers(1, most + 1))]
+    again = examine(motion, one.around, barred.tolist())
+    return again if again is not None else seen
+
+
+def _pooled_labels(label: NDArray[np.int8], texture: MotionTexture) -> NDArray[np.int8]:
+    wrong = pool((label == 1).astype(np.float32), texture)
+    unsure = pool((label != 0).astype(np.float32), texture)
+    return np.where(wrong > 0, 1, np.where(unsure > 0, -1, 0)).astype(np.int8)
+
+
+def _fitted(examples: Sequence[_Example], rng: np.random.Generator) -> tuple[Forest, Forest]:
+    """Learn the decisions on single frames: of joints, and of the root rows."""
+    joints = _Rows.of([(one.joints, one.labels[:, :-2]) for one in examples])
+    root = _Rows.of([(one.root, one.labels[:, -2:]) for one in examples])
+    return _fit(joints, rng), _fit(root, rng)
+
+
+def _span_examples(
+    examples: Sequence[_Example], judges: Sequence[_Judge], anatomy: Anatomy
+) -> _Rows:
+    """Candidate spans that the decision of the other half of the takes raises."""
+    parts = []
+    for one in examples:
+        judge = judges[1 - one.half]
+        joints, root = judge.joints.probability(one.joints), judge.root.probability(one.root)
+        probability = np.hstack([joints, root])
+        found = candidates(probability)
+        if found:
+            rows = span_features(probability, one.joints, one.root, anatomy.limb, found)
+            parts.append((rows, labels_of(one.labels, found)))
+    return _Rows.of(parts)
+
+
+def _fit(examples: _Rows, rng: np.random.Generator, small: bool = False) -> Forest:
+    # Imported here: scikit-learn takes a second, and only learning needs it.
+    from sklearn.ensemble import HistGradientBoostingClassifier
+    from threadpoolctl import threadpool_limits
+
+    right, wrong = (np.flatnonzero(examples.labels == value) for value in (0, 1))
+    if not len(wrong) or not len(right):
+        raise MocapError("the context is too short to learn from")
+    kept = rng.choice(right, min(len(right), _NEGATIVES), replace=False)
+    rows = np.concatenate([wrong, kept])
+    model = HistGradientBoostingClassifier(
+        max_iter=80 if small else 130,
+        learning_rate=0.08 if small else 0.1,
+        max_leaf_nodes=8 if small else 31,
+        min_samples_leaf=20 if small else 40,
+        l2_regularization=1.0,
+        early_stopping=False,
+        random_state=0,
+    )
+    # Waiting OpenMP threads spin: on a busy machine one thread is faster than two.
+    with threadpool_limits(1):
+        model.fit(examples.rows[rows], examples.labels[rows])
+    forest = Forest.of(model)
+    # What was left out of the right rows is put back into the odds: weights would do the same,
+    # but make scikit-learn's binning several times slower.
+    return replace(forest, base=forest.base - float(np.log(len(right) / len(kept))))
