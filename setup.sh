@@ -44,9 +44,9 @@ find_python() {
 python=$(find_python)
 
 if command -v apt-get >/dev/null; then
-  while read -r _ package; do
+  for package in $(awk '!/^#/ && !seen[$2]++ { print $2 }' resources/system/debian-packages.txt); do
     want "$package"
-  done < <(grep -v '^#' resources/system/debian-packages.txt | sort -u -k2,2)
+  done
   [ "$extra" != dev ] || { want xvfb; want xauth; }
   # Debian splits what makes an environment off the Python of its own.
   "$python" -c 'import ensurepip' 2>/dev/null || packages+=(python3-venv)
