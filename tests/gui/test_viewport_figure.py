@@ -124,3 +124,35 @@ def test_a_bone_takes_its_colour_from_the_joint_that_turns_it():
     assert rings[bone, 0] == 200
     assert rings[bone, -1] == 100
     assert (np.diff(rings[bone].astype(int)) <= 0).all()
+
+
+def test_a_head_with_eyes_is_one_bone_in_the_colour_of_the_head(data):
+    path = data / "cmu_salsa_pairs_bvh" / "60_10_scaled.bvh"
+    motion = WorldMotion(read(path)[0][0])
+    skeleton, points = motion.take.skeleton, motion.points(0)
+    figure = build_figure(skeleton, points, FINE)
+    head, eye = skeleton.index["head"], skeleton.index["leftEye"]
+    assert eye not in figure.ends
+    (skull,) = np.flatnonzero(figure.starts == head)
+    between = points[[eye, skeleton.index["rightEye"]]].mean(axis=0)
+    assert figure.places(points)[figure.ends[skull]] == pytest.approx(between)
+    colours = np.zeros((len(points), 3), np.uint8)
+    colours[head] = 150
+    balls = len(figure.balls) * len(sphere(FINE.sphere)[0])
+    rings = figure.colour(colours)[balls:].reshape(len(figure.starts), -1, 3)
+    assert (rings[skull] == 150).all()
+
+
+@pytest.mark.parametrize("folder", ["bandai_2_normal_bvh_CCBYNC4", "cmu_locomotion_bvh"])
+def test_every_head_is_wider_than_the_neck_and_beyond_it(data, folder):
+    motion = WorldMotion(read(sorted((data / folder).glob("*.bvh"))[0])[0][0])
+    skeleton, points = motion.take.skeleton, motion.points(0)
+    figure = build_figure(skeleton, points, FINE)
+    widest = int(np.argmax(figure.rings.max(axis=1)))
+    crown = figure.pose(points)[0][:, 1].max()
+    assert (
+        "head"
+        in skeleton.names[figure.starts[widest]].lower()
+        + skeleton.names[min(figure.ends[widest], len(skeleton) - 1)].lower()
+    )
+    assert crown > points[:, 1].max() + 0.01

@@ -27,6 +27,8 @@ class Figure:
         J: points below it are joints, then come the tips, then points of the figure's own:
     middles
         (M, 2) the points between each two of which such a point lies.
+    owners
+        (M,) the joint whose colour it takes.
     starts, ends
         (B,) points that each drawn bone joins; bones without length are left out.
     balls
@@ -41,6 +43,7 @@ class Figure:
 
     joints: int
     middles: Indices
+    owners: Indices
     starts: Indices
     ends: Indices
     balls: Indices
@@ -63,7 +66,7 @@ class Figure:
     def colour(self, colours: NDArray[np.uint8]) -> NDArray[np.uint8]:
         """(corners, 3): spread one colour a point; a bone runs from its start's to its end's."""
         ball, _ = sphere(self.detail.sphere)
-        colours = np.concatenate([colours, colours[self.middles[:, 0]]])
+        colours = np.concatenate([colours, colours[self.owners]])
         balls = np.repeat(colours[self.balls], len(ball), axis=0)
         share = np.clip(self.ring_place, 0, 1)[:, :, None] ** 2
         mixed = colours[self.starts][:, None] * (1 - share) + colours[self.ends][:, None] * share

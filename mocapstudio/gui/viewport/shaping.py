@@ -60,6 +60,7 @@ def build_figure(skeleton: Skeleton, points: Points, detail: Detail) -> Figure:
     return Figure(
         joints=len(skeleton),
         middles=own.middles,
+        owners=skeleton.parents[own.middles[:, 0]],
         starts=own.starts,
         ends=own.ends,
         balls=balls,
