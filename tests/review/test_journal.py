@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from review_pieces import NAMES, analyse, document_with, flag, read_bvh, small_take, write_bvh
 
-from mocapstudio.motion.errors import FileError
+from mocapstudio.motion.errors import FileError, MocapError
 from mocapstudio.review import journal_records, session_file
 from mocapstudio.review.document import Document
 from mocapstudio.review.journal import Journal, recover, unfinished
@@ -100,6 +100,25 @@ def test_steps_since_the_last_save_come_back_and_can_be_undone(tmp_path: Path) -
     assert [p.what for p in back.state.problems] == ["2 steps recovered that had not been saved"]
     back.undo()
     assert back.state.sitting.edits == ()
+
+
+def test_a_group_comes_back_as_one_step_and_a_failed_one_not_at_all(tmp_path: Path) -> None:
+    path = _session(tmp_path)
+    document = _opened(path)
+    journal = Journal(document)
+    with document.group("Tidy up"):
+        document.accept(FLAGS[0].id)
+        document.reject(FLAGS[1].id)
+    with pytest.raises(MocapError), document.group("Fail"):
+        document.accept(FLAGS[2].id)
+        document.accept("nothing")
+    _crash(journal)
+    back = session_file.load(path)
+    assert _told(back.state.sitting) == _told(document.state.sitting)
+    assert back.state.can_undo == "Tidy up"
+    back.undo()
+    assert back.state.can_undo is None
+    assert back.state.sitting.decisions == ()
 
 
 def test_a_second_crash_after_recovery_loses_nothing_either(tmp_path: Path) -> None:

@@ -102,6 +102,16 @@ def test_a_session_finds_takes_that_stayed_where_they_were(tmp_path: Path) -> No
     assert loaded.state.problems == ()
 
 
+def test_of_two_places_the_one_with_the_known_content_is_taken(tmp_path: Path) -> None:
+    session_file.save(_worked(tmp_path / "here"), tmp_path / "here" / "one.mocapstudio")
+    (tmp_path / "there").mkdir()
+    shutil.copy(tmp_path / "here" / "one.mocapstudio", tmp_path / "there")
+    write_bvh(tmp_path / "there" / "walk.bvh", small_take("walk", seed=9))
+    loaded = session_file.load(tmp_path / "there" / "one.mocapstudio")
+    assert loaded.state.problems == ()
+    assert loaded.source("walk").source.path == tmp_path / "here" / "walk.bvh"
+
+
 @pytest.mark.parametrize("answers", ["file", "folder"])
 def test_one_answer_relocates_the_whole_folder(tmp_path: Path, answers: str) -> None:
     path = tmp_path / "one.mocapstudio"
