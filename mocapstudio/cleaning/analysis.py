@@ -36,6 +36,8 @@ class Analysis:
         Worst first.
     own_rate
         Pops and jitter, (F, R) over the rows of the map.
+    learnt
+        Whether the learnt decision drew the map.
     unanalysed
         Names of joints that were left out: fingers, eyes, or unknown to the context.
     """
@@ -48,6 +50,7 @@ class Analysis:
     flags: tuple[Flag, ...]
     own_rate: OwnRate
     unanalysed: tuple[str, ...]
+    learnt: bool = False
 
     @property
     def texture(self) -> MotionTexture:

@@ -100,7 +100,8 @@ def detect(
     if parameters.mode != PAPER:
         height = root.height_departure(texture, corpus, neighbours, shape)
         digression = _with_root_and_pops(take, digression, texture, height, rates)
-    if parameters.mode != PAPER and decision is not None and decision.joints == joints:
+    learnt = parameters.mode != PAPER and decision is not None and decision.joints == joints
+    if decision is not None and learnt:
         yield Progress(0.75, "deciding")
         digression = _decided(take, motion, corpus, decision, digression)
     digression = _without(digression, [*normal, *protected])
@@ -114,6 +115,7 @@ def detect(
         flags=find_flags(take, digression, rates, parameters.threshold),
         own_rate=rates,
         unanalysed=tuple(name for name in take.skeleton.names if name not in joints),
+        learnt=learnt,
     )
 
 

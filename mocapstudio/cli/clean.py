@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mocapstudio.cli.detection_options import ModeOption, Threshold
+from mocapstudio.cli.detection_options import ModeOption, Quick, Threshold
 from mocapstudio.cli.output import JsonPath, check_writable, write_json
 from mocapstudio.cli.take_options import Context, Fps, JointMap, TakeOptions, Unit, UpAxis
 from mocapstudio.motion.errors import MocapError
@@ -31,6 +31,7 @@ def clean(
     context: Context = None,
     threshold: Threshold = None,
     mode: ModeOption = None,
+    quick: Quick = False,
     json_path: JsonPath = None,
     fps: Fps = None,
     unit: Unit = None,
@@ -61,7 +62,9 @@ def clean(
             found = work.read(path)
             for take in found:
                 target = targets.of(path, take, alone=len(found) == 1)
-                document, performer = repaired(analyse(take, others, chosen), context or ())
+                document, performer = repaired(
+                    analyse(take, others, chosen, quick=quick), context or ()
+                )
                 export(document, performer, target)
                 done.append(changes.as_json(path, target, document.state.sitting.edits))
     write_json({"takes": done}, json_path)

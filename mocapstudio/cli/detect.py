@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mocapstudio.cli.detection_options import ModeOption, Threshold
+from mocapstudio.cli.detection_options import ModeOption, Quick, Threshold
 from mocapstudio.cli.output import JsonPath, check_writable, write_json, write_npz
 from mocapstudio.cli.take_options import Context, Fps, JointMap, TakeOptions, Unit, UpAxis
 from mocapstudio.motion.errors import MocapError
@@ -31,6 +31,7 @@ def detect(
     context: Context = None,
     threshold: Threshold = None,
     mode: ModeOption = None,
+    quick: Quick = False,
     map_path: MapPath = None,
     json_path: JsonPath = None,
     fps: Fps = None,
@@ -56,7 +57,7 @@ def detect(
     for path in files:
         with work.going_on():
             for take in work.read(path):
-                analysis = analyse(take, others, chosen)
+                analysis = analyse(take, others, chosen, quick=quick)
                 maps.write(analysis, path)
                 found.append(as_json(analysis, path))
                 if json_path is None:

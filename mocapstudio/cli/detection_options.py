@@ -26,6 +26,15 @@ ModeOption = Annotated[
     typer.Option("--mode", help="How residuals are scaled: learnt from the context, or literally."),
 ]
 
+Quick = Annotated[
+    bool,
+    typer.Option(
+        "--quick",
+        help="Do not learn from the context: a rougher map, at once. What was learnt is kept, so"
+        " that only the first run on a context takes its time.",
+    ),
+]
+
 
 def parameters(threshold: float | None, mode: Mode | None) -> DetectionParameters:
     """Return the parameters of detection, defaults where nothing is asked.
@@ -45,9 +54,15 @@ def parameters(threshold: float | None, mode: Mode | None) -> DetectionParameter
     return chosen
 
 
-def analyse(take: Take, context: Sequence[Take], chosen: DetectionParameters) -> Analysis:
+def analyse(
+    take: Take, context: Sequence[Take], chosen: DetectionParameters, *, quick: bool = False
+) -> Analysis:
     """Run the detection on a take with a bar on the terminal."""
     from mocapstudio.cleaning.detection import detect
+    from mocapstudio.cleaning.refined import detect_refined
     from mocapstudio.cli.take_files import without_itself
 
-    return progress.run(detect(take, without_itself(context, take), chosen), take.name)
+    others = without_itself(context, take)
+    if quick:
+        return progress.run(detect(take, others, chosen), take.name)
+    return progress.run(detect_refined(take, others, chosen, known=context), take.name)

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 
-from mocapstudio.cleaning.parameters import DetectionParameters
+from mocapstudio.cleaning.parameters import CALIBRATED, DetectionParameters
+from mocapstudio.gui import settings
 from mocapstudio.gui.document import DocumentBridge
 from mocapstudio.gui.jobs import Job, Jobs
 from mocapstudio.gui.messages import Messages
@@ -99,12 +100,45 @@ class Analysing(QObject):
             count = len(analysis.flags)
             words = f"{count} flags" if count != 1 else "1 flag"
             self._messages.tell(f"{take.name}: {words}.")
+            if parameters.mode == CALIBRATED and settings.flag("learn", True):
+                self._refine(performer, parameters)
 
         self._job = self._jobs.start(
             f"Analysing {take.name}",
             work,
             finished,
             lambda error: self._messages.complain(error, f"{take.name} could not be analysed"),
+            key=_KEY,
+        )
+        self._job.ended.connect(self._tell)
+        self._tell()
+
+    def _refine(self, performer: str, parameters: DetectionParameters) -> None:
+        """Learn from the context behind the first map, then draw the map anew."""
+        document = self._bridge.document
+        generation = document.begin_analysis(performer)
+        take = document.source(performer)
+        work = _refined(
+            take,
+            document.context_takes,
+            parameters,
+            document.normal(performer),
+            document.protected(performer),
+        )
+
+        def finished(analysis: Analysis) -> None:
+            if self._bridge.document is not document:
+                return
+            # The threshold may have moved while this was learning.
+            current = analysis.with_threshold(self._bridge.state.threshold)
+            document.finish_analysis(performer, generation, current)
+            self._messages.tell(f"{take.name}: map refined, {len(current.flags)} flags.")
+
+        self._job = self._jobs.start(
+            "Learning from the context",
+            work,
+            finished,
+            lambda error: self._messages.complain(error, "Nothing could be learnt"),
             key=_KEY,
         )
         self._job.ended.connect(self._tell)
@@ -127,3 +161,20 @@ def _analysis(
     from mocapstudio.cleaning.detection import detect
 
     return (yield from detect(take, context, parameters, normal=normal, protected=protected))
+
+
+def _refined(
+    take: Take,
+    context: tuple[Take, ...],
+    parameters: DetectionParameters,
+    normal: Sequence[Declared],
+    protected: Sequence[Declared],
+) -> Generator[Progress, None, Analysis]:
+    from mocapstudio.cleaning.refined import detect_refined
+
+    others = without_itself(context, take)
+    return (
+        yield from detect_refined(
+            take, others, parameters, known=context, normal=normal, protected=protected
+        )
+    )

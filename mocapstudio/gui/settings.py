@@ -25,6 +25,16 @@ def set_text(key: str, value: str) -> None:
     _store().setValue(key, value)
 
 
+def flag(key: str, default: bool) -> bool:
+    """Return a remembered switch."""
+    return str(_store().value(key, default)).lower() in ("true", "1")
+
+
+def set_flag(key: str, value: bool) -> None:
+    """Remember a switch."""
+    _store().setValue(key, value)
+
+
 def layout(key: str) -> QByteArray | None:
     """Return the remembered state of a window, splitter or header."""
     value = _store().value(f"layout/{key}")

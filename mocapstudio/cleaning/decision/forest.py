@@ -46,8 +46,11 @@ class Forest:
     value: F32
 
     @staticmethod
-    def of(model: Any) -> Forest:
-        """Copy the trees out of a fitted binary `HistGradientBoostingClassifier`."""
+    def of(model: Any, columns: NDArray[np.int64]) -> Forest:
+        """Copy the trees out of a fitted binary `HistGradientBoostingClassifier`.
+
+        `columns` tells which features the model's own ones are.
+        """
         nodes = [predictors[0].nodes for predictors in model._predictors]
         roots = np.concatenate([[0], np.cumsum([len(n) for n in nodes])[:-1]]).astype(np.int32)
         every = np.concatenate(nodes)
@@ -56,7 +59,7 @@ class Forest:
         return Forest(
             float(np.ravel(model._baseline_prediction)[0]),
             roots,
-            np.where(leaf, -1, every["feature_idx"]).astype(np.int32),
+            np.where(leaf, -1, columns[every["feature_idx"]]).astype(np.int32),
             every["num_threshold"].astype(np.float32),
             (every["left"] + shift).astype(np.int32),
             (every["right"] + shift).astype(np.int32),

@@ -52,7 +52,8 @@ def root_features(
     # Another floor or body height is no error.
     height = _SIGNALS.index("height")
     for away in (context, own):
-        away[:, height] -= np.nan_to_num(np.nanmedian(away[:, height]))
+        known = np.isfinite(away[:, height])
+        away[:, height] -= np.median(away[known, height]) if known.any() else 0.0
     columns = [x for i in range(len(_SIGNALS)) for x in (context[:, i], own[:, i], spread[:, i])]
     columns += [x for v in mine.T for x in (np.abs(v), np.abs(np.gradient(v)))]
     turned = np.cumsum(mine[:, _SIGNALS.index("turning")])[:, None] / TEXTURE_RATE

@@ -39,7 +39,7 @@ def prepare(
 
     Raises
     ------
-    MocapError
+    TooLittleToLearnError
         If there is nothing to learn from.
     """
     joints = comparable_joints(context[0], context[1:])

@@ -41,6 +41,10 @@ _LEAST_USUAL = np.array([2.0, 2.0, 2.0, 0.1, 0.1], dtype=np.float32)
 _MOST_DROPPED = 10
 
 
+class TooLittleToLearnError(MocapError):
+    """A context from which no decision can be learnt."""
+
+
 @dataclass(frozen=True, eq=False)
 class _Known:
     """One take of the context and what it is compared with."""
@@ -97,8 +101,8 @@ def learn(
 
     Raises
     ------
-    MocapError
-        If no take is as long as a window.
+    TooLittleToLearnError
+        If no take is as long as a window, or nothing could be learnt.
     """
     yield Progress(0.0, "preparing the context")
     names = tuple(joints) if joints is not None else comparable_joints(context[0], context[1:])
@@ -106,7 +110,7 @@ def learn(
     motions = [body_motion(take, names) for take in context]
     motions = [one for one in motions if len(texture_of(one)) >= LEAST_FRAMES]
     if not motions:
-        raise MocapError("no take of the context is long enough to learn from")
+        raise TooLittleToLearnError("no take of the context is long enough to learn from")
     takes = _each_without_itself(motions, anatomy)
     usual = yield from _usual(takes)
     takes = [replace(one, around=replace(one.around, usual=usual)) for one in takes]
@@ -206,6 +210,8 @@ def _span_examples(
         if found:
             rows = span_features(probability, one.joints, one.root, anatomy.limb, found)
             parts.append((rows, labels_of(one.labels, found)))
+    if not parts:
+        raise TooLittleToLearnError("no error that was put into the context stands out")
     return _Rows.of(parts)
 
 
@@ -216,7 +222,7 @@ def _fit(examples: _Rows, rng: np.random.Generator, small: bool = False) -> Fore
 
     right, wrong = (np.flatnonzero(examples.labels == value) for value in (0, 1))
     if not len(wrong) or not len(right):
-        raise MocapError("the context is too short to learn from")
+        raise TooLittleToLearnError("the context is too short to learn from")
     kept = rng.choice(right, min(len(right), _NEGATIVES), replace=False)
     rows = np.concatenate([wrong, kept])
     model = HistGradientBoostingClassifier(
@@ -230,8 +236,10 @@ def _fit(examples: _Rows, rng: np.random.Generator, small: bool = False) -> Fore
     )
     # Waiting OpenMP threads spin: on a busy machine one thread is faster than two.
     with threadpool_limits(1):
-        model.fit(examples.rows[rows], examples.labels[rows])
-    forest = Forest.of(model)
+        # What does not exist in this context, such as other takes, is no column to learn from.
+        there = np.flatnonzero(np.isfinite(examples.rows[rows]).any(axis=0))
+        model.fit(examples.rows[np.ix_(rows, there)], examples.labels[rows])
+    forest = Forest.of(model, there)
     # What was left out of the right rows is put back into the odds: weights would do the same,
     # but make scikit-learn's binning several times slower.
     return replace(forest, base=forest.base - float(np.log(len(right) / len(kept))))
