@@ -229,11 +229,11 @@ def _learn(
     data: Sequence[Path], corpus: str, seed: int, limit: int
 ) -> dict[str, dict[str, Detector]]:
     """Learn and tune what needs it, on the development half."""
-    training = cases(tuple(data), corpus, "large", seed, limit, "development")
+    training = cases(tuple(data), corpus, "large", seed, max(2 * limit, 16), "development")
     clean = training[0].context
     return {
         BASELINES: baselines.learnt_and_tuned(clean, training),
-        ALTERNATIVES: tuned_alternatives(training[: max(4, limit // 2)]),
+        ALTERNATIVES: tuned_alternatives(training),
     }
 
 

@@ -28,8 +28,9 @@ def detector_of(values_of: ValueMap, *, curve: bool = True) -> Detector:
     def detector(take: Take, context: Sequence[Take]) -> Detection:
         rows, values = values_of(take, context)
         rate = float(take.rate)
-        sweep = {t: flags_above(values, rows, t, rate) for t in THRESHOLDS if curve}
-        return Detection(flags_above(values, rows, 0.5, rate), sweep)
+        thresholds = THRESHOLDS if curve else (0.5,)
+        sweep = {t: flags_above(values, rows, t, rate) for t in thresholds}
+        return Detection(sweep[0.5], sweep)
 
     return detector
 
