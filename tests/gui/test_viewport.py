@@ -7,12 +7,13 @@ import os
 import subprocess
 import sys
 import weakref
+from dataclasses import replace
 from pathlib import Path
 
 import mouse
 import numpy as np
 import pytest
-from plot_scene import offer, sitting
+from plot_scene import offer, sitting, walking
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication, QMainWindow, QToolTip
@@ -68,7 +69,7 @@ def canvas_of(view):
 
 def place(view, name: str) -> QPointF:
     """Where a joint is seen, by the camera that tests of its own compare with VTK's."""
-    motion = view._roles[0].motion
+    motion = view.director.roles[0].motion
     joint = motion.take.skeleton.index[name]
     points = motion.points(view._bridge.state.frame)[[joint]]
     canvas = canvas_of(view)
@@ -162,7 +163,7 @@ def test_the_wheel_zooms_towards_the_mouse(desk):
 
 def test_keys_choose_a_view_wherever_the_focus_is(desk, qtbot):
     document, view = desk
-    heading = view._roles[0].motion.heading(document.state.frame)
+    heading = view.director.roles[0].motion.heading(document.state.frame)
     for key, away, high in ((Qt.Key.Key_6, 0, 6), (Qt.Key.Key_7, 90, 6), (Qt.Key.Key_8, 0, 90)):
         qtbot.keyClick(view.window(), key)
         turned = np.degrees(view.camera.azimuth - heading) - away
@@ -175,7 +176,9 @@ def test_a_double_click_frames_the_joint_and_one_beside_it_the_body(desk):
     far = view.camera.distance
     mouse.double_click(canvas_of(view), place(view, "LeftHand"))
     assert view.camera.distance < 0.5 * far
-    hand = view._points()[view._roles[0].motion.take.skeleton.index["LeftHand"]]
+    hand = view.director.points(view._bridge.state.frame)[
+        view.director.roles[0].motion.take.skeleton.index["LeftHand"]
+    ]
     assert np.linalg.norm(view.camera.focal - hand) < 0.02
     view._bridge.document.clear_selection()
     mouse.double_click(canvas_of(view), QPointF(20, 300))
@@ -226,6 +229,17 @@ def test_the_caption_tells_take_frame_and_time_as_the_file_numbers_them(desk):
     document.set_frame(240)
     labels = [part.text() for part in view._caption.children() if hasattr(part, "text")]
     assert labels == ["walking", "frame 241 · 2.00 s"]
+
+
+def test_a_long_name_makes_room_for_the_buttons(desk, qtbot):
+    document, view = desk
+    view.window().resize(420, 400)
+    qtbot.wait(100)
+    document.close_performer(document.state.active)
+    document.open_take(replace(walking(), name="a name that is longer than the view is wide " * 2))
+    caption = view._caption.geometry()
+    assert not caption.intersects(view._bar.geometry().translated(view._bar.parent().pos()))
+    assert caption.width() > 60
 
 
 def test_the_picture_changes_with_the_frame_and_comes_back(desk, qtbot):

@@ -22,6 +22,7 @@ class Caption(QWidget):
         super().__init__(parent)
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self._name, self._time = QLabel(self), QLabel(self)
+        self._whole, self._room = "", 10_000
         self._name.setTextFormat(Qt.TextFormat.PlainText)
         self._time.setFont(theme.numbers_font())
         column = QVBoxLayout(self)
@@ -40,12 +41,23 @@ class Caption(QWidget):
 
     def tell(self, name: str, time: str) -> None:
         """Show another name or time."""
-        if name != self._name.text():
-            self._name.setText(name)
+        if name != self._whole:
+            self._whole = name
+            self.fit(self._room)
         self._time.setText(time)
         # Only ever wider: no new layout for every frame.
         if self._time.sizeHint().width() > self._time.minimumWidth():
             self._time.setMinimumWidth(self._time.sizeHint().width())
+
+    def fit(self, width: int) -> None:
+        """Shorten the name, in its middle, to so many pixels."""
+        self._room = width
+        # The type in force is the style sheet's, which comes with the polish.
+        self._name.ensurePolished()
+        metrics = self._name.fontMetrics()
+        self._name.setText(
+            metrics.elidedText(self._whole, Qt.TextElideMode.ElideMiddle, max(width - 24, 60))
+        )
 
 
 class Legend(QLabel):

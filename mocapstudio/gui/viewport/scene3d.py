@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,6 +13,7 @@ from mocapstudio.gui.viewport import floor, marks
 from mocapstudio.gui.viewport.bodies import Bodies
 from mocapstudio.gui.viewport.camera import VIEW_ANGLE, Turntable
 from mocapstudio.gui.viewport.cast import Part, Role
+from mocapstudio.gui.viewport.look import Look
 from mocapstudio.gui.viewport.palette import Palette, mix, tint
 from mocapstudio.gui.viewport.shaping import stature
 from mocapstudio.gui.viewport.solids import Floats
@@ -30,35 +30,6 @@ _APART = 0.003
 _SAMPLES = 48
 # How stout a ghost is beside the performer: it must not hide what it is compared with.
 _GIRTH = {Part.ORIGINAL: 0.6, Part.PROPOSAL: 0.8, Part.NEIGHBOUR: 0.45}
-
-
-@dataclass(frozen=True)
-class Look:
-    """What is drawn of the roles at one frame.
-
-    Parameters
-    ----------
-    frame
-        Of the active take.
-    values
-        (J,) digression of the active performer's joints at the frame, NaN where not analysed, or
-        None while there is no map.
-    threshold
-        From which a joint counts as flagged.
-    selected
-        Indices of the selected joints.
-    trails
-        Whether they leave trails.
-    pixel
-        Size of a pixel in metres, where the camera looks.
-    """
-
-    frame: int
-    values: NDArray[np.floating] | None
-    threshold: float
-    selected: tuple[int, ...]
-    trails: bool
-    pixel: float
 
 
 class Scene3D:
@@ -93,6 +64,7 @@ class Scene3D:
         self.level = 0.0
         self.step = 1.0
         self._radius = 10.0
+        self._floored: tuple[list[WorldMotion], Palette] | None = None
 
     def cast(self, roles: Sequence[Role], palette: Palette) -> None:
         """Put other figures on stage, or colour them otherwise."""
@@ -109,12 +81,15 @@ class Scene3D:
         self._floor.mesh.actor.SetVisibility(bool(roles))
 
     def _lay_floor(self, palette: Palette) -> None:
-        first = self._roles[0].motion
+        shown = [r.motion for r in self._roles if r.part in (Part.RESULT, Part.PARTNER)]
+        if self._floored == (shown, palette):
+            return
+        self._floored = (shown, palette)
+        first = shown[0]
         self.stature = stature(first.take.skeleton, first.points(0))
         self.step = floor.spacing(self.stature)
         self.level = floor_level(first, self.stature)
-        seen = [r.motion.hips_path for r in self._roles if r.part in (Part.RESULT, Part.PARTNER)]
-        paths = np.concatenate(seen)[:, [0, 2]]
+        paths = np.concatenate([motion.hips_path for motion in shown])[:, [0, 2]]
         # In whole steps, so that an edit of the hips does not move the floor.
         low = np.floor(paths.min(axis=0) / self.step) * self.step
         high = np.ceil(paths.max(axis=0) / self.step) * self.step

@@ -5,34 +5,24 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from PySide6.QtCore import QEvent, QPointF, Qt
-from PySide6.QtGui import QCloseEvent, QKeyEvent, QShowEvent
+from PySide6.QtGui import QCloseEvent, QKeyEvent, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QGridLayout, QLabel, QToolTip, QWidget
 
 from mocapstudio.gui import theme, wording
-from mocapstudio.gui.document import DocumentBridge, UiState
-from mocapstudio.gui.viewport import picking
+from mocapstudio.gui.document import DocumentBridge, UiState, only_frame_differs
 from mocapstudio.gui.viewport.camera import Turntable
 from mocapstudio.gui.viewport.canvas import Canvas
-from mocapstudio.gui.viewport.cast import Part, Role, Stage
 from mocapstudio.gui.viewport.controls import Controls
-from mocapstudio.gui.viewport.mapped import JointValues
+from mocapstudio.gui.viewport.director import Director
 from mocapstudio.gui.viewport.neighbours import NeighbourProposals
 from mocapstudio.gui.viewport.opengl import opengl_problem
 from mocapstudio.gui.viewport.overlay import Bar, Caption, Legend
-from mocapstudio.gui.viewport.palette import Colour, palette
-from mocapstudio.gui.viewport.scene3d import Look, Scene3D
+from mocapstudio.gui.viewport.palette import palette
+from mocapstudio.gui.viewport.scene3d import Scene3D
 from mocapstudio.gui.viewport.switches import Switches
 from mocapstudio.motion.errors import FileError
-from mocapstudio.motion.facing import ROOT_ROWS
-from mocapstudio.motion.skeleton import Skeleton
-from mocapstudio.motion.topology import topology
 from mocapstudio.review.state import DocumentState
-
-_MOST_TRAILS = 6
-# How much of the body shows around a framed joint, as a share of the performer's height.
-_CLOSE = 0.16
 
 
 class Viewport(QWidget):
@@ -53,14 +43,10 @@ class Viewport(QWidget):
     def __init__(self, bridge: DocumentBridge, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._bridge = bridge
-        self.camera = Turntable()
-        self._stage = Stage()
+        self.director = Director()
         self._neighbours = NeighbourProposals(self)
         self._neighbours_shown = False
-        self._roles: tuple[Role, ...] = ()
-        self._values: JointValues | None = None
         self._cast_again = self._frame_again = True
-        self._anchor: NDArray[np.float64] | None = None
         self._palette = palette(theme.current())
         self.switches = Switches(
             self,
@@ -82,25 +68,24 @@ class Viewport(QWidget):
 
     # What the desk may ask for
 
+    @property
+    def camera(self) -> Turntable:
+        """Where the scene is seen from."""
+        return self.director.camera
+
     def set_view(self, name: str) -> None:
         """Look from ``"front"``, ``"side"``, ``"top"`` or ``"three-quarter"`` of the performer."""
-        heading = self._roles[0].motion.heading(self._bridge.state.frame) if self._roles else 0.0
-        self.camera.look(name, heading)
+        self.director.view(name, self._bridge.state.frame)
         self._stir()
 
     def frame_joint(self, name: str | None = None) -> None:
         """Bring a joint close; None for the selected joints, or the body where there are none."""
-        if not self._roles:
-            return
-        skeleton = self._roles[0].motion.take.skeleton
-        joints = self._selected() if name is None else (skeleton.index[name],)
-        points = self._points()
-        if joints:
-            room = _CLOSE * self._stature()
-            near = points[list(joints)]
-            points = np.concatenate([near - room, near + room])
-        self.camera.frame(points.astype(float), self._aspect())
-        self._stir()
+        state = self._bridge.state
+        if self.director.roles:
+            one = None if name is None else (self.director.skeleton.index[name],)
+            joints = self.director.selected(state) if one is None else one
+            self.director.close_in(joints, state.frame, self._aspect())
+            self._stir()
 
     def set_follow(self, on: bool) -> None:
         """Let the camera go along with the hips, or stay where it is."""
@@ -132,26 +117,18 @@ class Viewport(QWidget):
     # What the document says
 
     def _show_state(self, old: DocumentState, new: DocumentState) -> None:
-        before, now = old.scene.performers, new.scene.performers
-        if not any(one in now for one in before):
-            self._frame_again = True
-        self._cast_again |= (
-            old.scene is not new.scene
-            or old.active != new.active
-            or old.sitting is not new.sitting
-            or old.analyses is not new.analyses
-            or old.proposals != new.proposals
-            or old.selection.flag != new.selection.flag
-        )
+        if not only_frame_differs(old, new):
+            before, now = old.scene.performers, new.scene.performers
+            self._frame_again |= not any(one in now for one in before)
+            self._cast_again = True
         self._refresh()
 
     def _show_ui(self, old: UiState, new: UiState) -> None:
         self.switches.follow.setChecked(new.follow)
         self.switches.ghosts.setChecked(new.ghosts)
         self._cast_again |= old.ghosts != new.ghosts
-        if new.follow and not old.follow and self._roles:
-            self.camera.focal = self._roles[0].motion.followed[self._bridge.state.frame].copy()
-            self._anchor = None
+        if new.follow and not old.follow:
+            self.director.face(self._bridge.state.frame)
         self._refresh()
 
     def _recast(self) -> None:
@@ -168,46 +145,22 @@ class Viewport(QWidget):
         take = state.take
         self._caption.setVisible(take is not None)
         self._legend.setVisible(take is not None)
-        if take is None or not self._roles:
-            self._stir()
-            return
-        number = wording.number(take, state.frame)
-        self._caption.tell(take.name, f"frame {number} · {wording.seconds(take, state.frame)}")
-        self._go_along(state.frame)
+        if take is not None:
+            number, time = wording.number(take, state.frame), wording.seconds(take, state.frame)
+            self._caption.tell(take.name, f"frame {number} · {time}")
+            self.director.go_along(state.frame, self._bridge.ui.follow)
         self._stir()
 
     def _cast(self, state: DocumentState) -> None:
         wanted = state.selected if self._neighbours_shown else None
         self._neighbours.ask(state.analysis, None if wanted is None else wanted.flag)
-        if state.take is None:
-            self._roles, self._values, self._anchor = (), None, None
-        else:
-            result = self._bridge.document.result(state.active)
-            self._roles = self._stage.cast(
-                state, result, ghosts=self._bridge.ui.ghosts, neighbours=self._neighbours.ready
-            )
-            mapped = None if state.analysis is None else state.analysis.map
-            skeleton = result.skeleton
-            self._values = None if mapped is None else JointValues(mapped, skeleton)
+        result = None if state.take is None else self._bridge.document.result(state.active)
+        self.director.cast(
+            state, result, ghosts=self._bridge.ui.ghosts, neighbours=self._neighbours.ready
+        )
         if self._scene is not None:
-            self._scene.cast(self._roles, self._palette)
-            self._legend.tell(self._legend_lines(), f"{self._scene.step:g} m")
-
-    def _legend_lines(self) -> list[tuple[str, Colour]]:
-        colours = {
-            Part.ORIGINAL: self._palette.original,
-            Part.PROPOSAL: self._palette.proposal,
-            Part.NEIGHBOUR: self._palette.neighbour,
-            Part.PARTNER: self._palette.partner,
-        }
-        lines = {role.name: colours[role.part] for role in self._roles if role.part in colours}
-        return list(lines.items())
-
-    def _go_along(self, frame: int) -> None:
-        anchor = self._roles[0].motion.followed[frame]
-        if self._bridge.ui.follow and self._anchor is not None:
-            self.camera.focal = self.camera.focal + (anchor - self._anchor)
-        self._anchor = anchor
+            self._scene.cast(self.director.roles, self._palette)
+            self._legend.tell(self.director.legend(self._palette), f"{self._scene.step:g} m")
 
     # The picture
 
@@ -215,17 +168,12 @@ class Viewport(QWidget):
         """Put the scene together for one paint."""
         if self._scene is None:
             return
-        if self._roles:
-            state = self._bridge.state
+        if self.director.roles:
+            state, ui = self._bridge.state, self._bridge.ui
             if self._frame_again:
                 self._frame_again = False
-                self.camera.look("three-quarter", self._roles[0].motion.heading(state.frame))
-                self.camera.frame(self._points().astype(float), self._aspect(), margin=1.35)
-            values = None if self._values is None else self._values.at(state.frame)
-            selected = self._selected()
-            trails = self._bridge.ui.trails and len(selected) <= _MOST_TRAILS
-            pixel = self.camera.metres_per_pixel(self.height())
-            look = Look(state.frame, values, state.threshold, selected, trails, pixel)
+                self.director.introduce(state.frame, self._aspect())
+            look = self.director.look(state, trails=ui.trails, height=self.height())
             self._scene.place(look, self.camera)
         self._scene.aim(self.camera)
 
@@ -233,34 +181,16 @@ class Viewport(QWidget):
         if self._canvas is not None:
             self._canvas.stir()
 
-    def _points(self) -> NDArray[np.float32]:
-        return self._roles[0].motion.points(self._bridge.state.frame)
-
-    def _selected(self) -> tuple[int, ...]:
-        if not self._roles:
-            return ()
-        skeleton: Skeleton = self._roles[0].motion.take.skeleton
-        hips = topology(skeleton).hips
-        names = self._bridge.state.selection.joints
-        found = {hips if name in ROOT_ROWS else skeleton.index.get(name, -1) for name in names}
-        return tuple(sorted(found - {-1}))
-
-    def _stature(self) -> float:
-        return 1.7 if self._scene is None else self._scene.stature
-
     def _aspect(self) -> float:
         return self.width() / max(self.height(), 1)
 
     # The mouse
 
     def _joint_at(self, at: QPointF) -> str | None:
-        if not self._roles or self._canvas is None:
+        if self._canvas is None:
             return None
-        skeleton = self._roles[0].motion.take.skeleton
         size = (self._canvas.width(), self._canvas.height())
-        joints = self._points()[: len(skeleton)]
-        found = picking.joint_at(self.camera, joints, (at.x(), at.y()), size)
-        return None if found is None else skeleton.names[found]
+        return self.director.joint_at(self._bridge.state.frame, (at.x(), at.y()), size)
 
     def _click(self, at: QPointF, extend: bool) -> None:
         name = self._joint_at(at)
@@ -279,10 +209,9 @@ class Viewport(QWidget):
             QToolTip.hideText()
             self._canvas.unsetCursor()
             return
+        value = self.director.value(name, self._bridge.state.frame)
         text = name
-        if self._values is not None:
-            joint = self._roles[0].motion.take.skeleton.index[name]
-            value = float(self._values.at(self._bridge.state.frame)[joint])
+        if value is not None:
             text += " · not analysed" if np.isnan(value) else f" · {value:.2f}"
         self._canvas.setCursor(Qt.CursorShape.PointingHandCursor)
         QToolTip.showText(self._canvas.mapToGlobal(at.toPoint()), text, self._canvas)
@@ -320,6 +249,11 @@ class Viewport(QWidget):
             inner.setContentsMargins(0, 8, 8, 0)
             inner.addWidget(self._bar)
             grid.addWidget(corner, 0, 0, top | right)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Keep the caption clear of the buttons."""
+        super().resizeEvent(event)
+        self._caption.fit(self.width() - self._bar.sizeHint().width() - 16)
 
     def showEvent(self, event: QShowEvent) -> None:
         """Catch up with what happened while out of sight."""
