@@ -54,6 +54,9 @@ def test_it_says_how_many_known_errors_were_found(
     assert int(found[2]) == 14
     assert int(found[1]) >= 12
     assert ended.stdout.count(" found (") == int(found[1])
+    flags = re.search(r"(\d+) flags, (\d+) of them false", ended.stdout)
+    assert flags is not None
+    assert int(flags[2]) < int(flags[1]) / 2
 
 
 def test_the_cleaned_take_is_closer_to_the_truth(
