@@ -245,14 +245,15 @@ def test_without_an_analysis_an_unknown_proposal_is_a_clear_error() -> None:
 
 def test_deferred_flags_go_to_the_end_and_the_walk_goes_on_where_they_were() -> None:
     document = document_with(A, B, C)
-    document.select_flag(A.id)
-    document.defer(A.id)
-    assert [i.flag.id for i in document.state.queue] == [B.id, C.id, A.id]
-    document.next_flag()
-    assert document.state.selection.flag == B.id
-    for expected in (C.id, A.id, B.id):
+    document.select_flag(B.id)
+    document.defer(B.id)
+    assert [i.flag.id for i in document.state.queue] == [A.id, C.id, B.id]
+    for expected in (C.id, B.id, A.id, C.id):
         document.next_flag()
         assert document.state.selection.flag == expected
+    document.undo()
+    document.select_flag(B.id)
+    document.defer(B.id)
     document.next_flag(-1)
     assert document.state.selection.flag == A.id
 
