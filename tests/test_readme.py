@@ -34,7 +34,7 @@ def test_commands_of_the_first_screen_are_one_line_each() -> None:
     assert block
     lines = [line for line in block[1].splitlines() if line and not line.startswith("#")]
     assert len(lines) == 2
-    assert all(line.startswith("bash setup.sh") for line in lines)
+    assert all(line.startswith("bash .ci/setup") for line in lines)
 
 
 def test_every_folder_named_exists() -> None:
