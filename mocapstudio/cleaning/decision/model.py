@@ -14,10 +14,34 @@ from mocapstudio.cleaning.decision.forest import Forest
 from mocapstudio.cleaning.decision.matching import LEAST_FRAMES, Matches, match
 from mocapstudio.cleaning.decision.root_features import root_features
 from mocapstudio.cleaning.decision.spans import judged
+from mocapstudio.cleaning.decision.surroundings import moments_of
 from mocapstudio.cleaning.own_rate import OwnRate
 from mocapstudio.similarity.texture import BodyMotion, MotionTexture, texture_of
 
 F32 = NDArray[np.float32]
+
+_BLOCK = 72
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """Features of one motion: (S, m, .) of joints and (S, 2, .) of the root rows."""
+
+    joints: F32
+    root: F32
+    matches: Matches
+
+
+@dataclass(frozen=True, eq=False)
+class Judge:
+    """Trees that decide frame by frame: about joints, and about the two root rows."""
+
+    joints: Forest
+    root: Forest
+
+    def probability(self, seen: Seen) -> F32:
+        """(S, m + 2) probability of an error: joints, root position, root heading."""
+        return np.hstack([self.joints.probability(seen.joints), self.root.probability(seen.root)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,17 +54,17 @@ class Decision:
         Names of the m joints.
     usual
         (5, m) what is usual for clean takes, see `features.USUAL`.
-    forest, root_forest
-        Of the joints and of the two root rows, frame by frame.
-    span_forest
-        Of candidate spans.
+    judges
+        One, or two where a take was all there was to learn from: each learnt from one half of its
+        frames (see `halves`) and judges the other.
+    spans
+        Trees that judge candidate spans.
     """
 
     joints: tuple[str, ...]
     usual: F32
-    forest: Forest
-    root_forest: Forest
-    span_forest: Forest
+    judges: tuple[Judge, ...]
+    spans: Forest
 
     def probabilities(self, motion: BodyMotion, around: Surroundings) -> tuple[F32, F32]:
         """Decide about every row and frame of a motion at 24 fps.
@@ -65,21 +89,14 @@ class Decision:
             return np.zeros((frames, joints + 2), np.float32), np.zeros(
                 (frames, joints), np.float32
             )
-        first = np.hstack(
-            [self.forest.probability(seen.joints), self.root_forest.probability(seen.root)]
+        first = (
+            crossed((self.judges[0], self.judges[1]), seen, halves(frames, 0, 1))
+            if len(self.judges) == 2
+            else self.judges[0].probability(seen)
         )
-        probability = judged(first, seen.joints, seen.root, around.limb, self.span_forest)
+        probability = judged(first, seen.joints, seen.root, around.limb, self.spans)
         name = "context mean" if len(around.textures) else "own mean"
         return probability, np.nan_to_num(seen.joints[..., COLUMN[name]])
-
-
-@dataclass(frozen=True, eq=False)
-class Seen:
-    """Features of one motion: (S, m, .) of joints and (S, 2, .) of the root rows."""
-
-    joints: F32
-    root: F32
-    matches: Matches
 
 
 def examine(motion: BodyMotion, around: Surroundings, barred: Sequence[int] = ()) -> Seen | None:
@@ -87,6 +104,9 @@ def examine(motion: BodyMotion, around: Surroundings, barred: Sequence[int] = ()
     texture = texture_of(motion)
     if len(texture) < LEAST_FRAMES:
         return None
+    if not around.textures:
+        # A take that is its own context brings its errors along, in the examples as in earnest.
+        around = replace(around, moments=moments_of(texture, around.centre))
     rates = pooled(own_rate.of_motion(motion), texture)
     matches = match(texture, around.textures, around.limb, barred)
     return Seen(
@@ -94,6 +114,19 @@ def examine(motion: BodyMotion, around: Surroundings, barred: Sequence[int] = ()
         root_features(texture, list(around.textures), matches, rates),
         matches,
     )
+
+
+def halves(frames: int, take: int, takes: int) -> NDArray[np.int64]:
+    """(S,) which half each frame belongs to: whole takes, or blocks of three seconds of one."""
+    if takes > 1:
+        return np.full(frames, take % 2, dtype=np.int64)
+    return np.arange(frames) // _BLOCK % 2
+
+
+def crossed(judges: tuple[Judge, Judge], seen: Seen, half: NDArray[np.int64]) -> F32:
+    """(S, m + 2) probabilities, every frame judged by the half it does not belong to."""
+    of_first, of_second = (judge.probability(seen) for judge in judges)
+    return np.asarray(np.where((half == 0)[:, None], of_second, of_first), dtype=np.float32)
 
 
 def pooled(rates: OwnRate, texture: MotionTexture) -> OwnRate:

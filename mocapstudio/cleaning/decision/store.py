@@ -15,13 +15,13 @@ import numpy as np
 import platformdirs
 
 from mocapstudio.cleaning.decision.forest import Forest
-from mocapstudio.cleaning.decision.model import Decision
+from mocapstudio.cleaning.decision.model import Decision, Judge
 from mocapstudio.cleaning.decision.training import learn
 from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.take import Take
 from mocapstudio.similarity.texture import comparable_joints
 
-_VERSION = 1
+_VERSION = 4
 _MOST_KEPT = 64
 
 
@@ -82,9 +82,10 @@ def save(decision: Decision, path: Path) -> None:
     try:
         with os.fdopen(handle, "wb") as out:
             arrays: dict[str, Any] = {"joints": np.array(decision.joints), "usual": decision.usual}
-            arrays |= decision.forest.arrays("joint ")
-            arrays |= decision.root_forest.arrays("root ")
-            arrays |= decision.span_forest.arrays("span ")
+            for i, judge in enumerate(decision.judges):
+                arrays |= judge.joints.arrays(f"joints {i} ")
+                arrays |= judge.root.arrays(f"root {i} ")
+            arrays |= decision.spans.arrays("spans ")
             np.savez_compressed(out, **arrays)
         Path(name).replace(path)
     except BaseException:
@@ -96,13 +97,16 @@ def load(path: Path) -> Decision | None:
     """Read a decision; None where there is none, or where the file is damaged."""
     try:
         with np.load(path, allow_pickle=False) as arrays:
-            return Decision(
-                tuple(str(name) for name in arrays["joints"]),
-                arrays["usual"],
-                Forest.from_arrays(arrays, "joint "),
-                Forest.from_arrays(arrays, "root "),
-                Forest.from_arrays(arrays, "span "),
+            judges = tuple(
+                Judge(
+                    Forest.from_arrays(arrays, f"joints {i} "),
+                    Forest.from_arrays(arrays, f"root {i} "),
+                )
+                for i in range(2 if "joints 1 base" in arrays else 1)
             )
+            names = tuple(str(name) for name in arrays["joints"])
+            spans = Forest.from_arrays(arrays, "spans ")
+            return Decision(names, arrays["usual"], judges, spans)
     except (OSError, KeyError, ValueError, zipfile.BadZipFile):
         return None
 

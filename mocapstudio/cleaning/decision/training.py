@@ -3,7 +3,9 @@
 1. Every take of the context is compared with the others: what residual is usual for a joint;
 2. errors are put into its takes, again and again, half of the time with the nearest takes
 left out, so that novelty is learnt as normal; 3. boosted trees learn to tell them apart, frame by
-frame; 4. smaller ones judge the spans that these raise, on takes they did not learn from.
+frame, each half of the takes for itself; 4. smaller trees judge the spans that these raise on what
+they did not learn from. A take that is alone is judged by trees learnt from every other three
+seconds of it, and what these find in it as it came is taken for unknown, not for normal.
 """
 
 from __future__ import annotations
@@ -14,10 +16,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapstudio.cleaning.decision.features import COLUMN, USUAL, Surroundings
+from mocapstudio.cleaning.decision.features import COLUMN, USUAL, Surroundings, windows
 from mocapstudio.cleaning.decision.forest import Forest
 from mocapstudio.cleaning.decision.matching import LEAST_FRAMES, nearest_takes
-from mocapstudio.cleaning.decision.model import Decision, Seen, examine, pool
+from mocapstudio.cleaning.decision.model import (
+    Decision,
+    Judge,
+    Seen,
+    crossed,
+    examine,
+    halves,
+    pool,
+)
 from mocapstudio.cleaning.decision.spans import candidates, labels_of, span_features
 from mocapstudio.cleaning.decision.spoiling import Anatomy, spoil
 from mocapstudio.cleaning.decision.surroundings import anatomy_of, mean_pose, moments_of
@@ -39,6 +49,21 @@ _VARIANTS = (2, 10)
 _NEGATIVES = 40_000
 _LEAST_USUAL = np.array([2.0, 2.0, 2.0, 0.1, 0.1], dtype=np.float32)
 _MOST_DROPPED = 10
+_SUSPECT = 0.3
+
+
+@dataclass(frozen=True)
+class _Size:
+    """How much trees can learn: their number, leaves, step, and samples a leaf at least."""
+
+    trees: int
+    leaves: int
+    rate: float
+    least: int
+
+
+_WHOLE, _HALF = _Size(110, 31, 0.12, 40), _Size(70, 31, 0.15, 40)
+_ROOT, _SMALL = _Size(60, 16, 0.12, 40), _Size(80, 8, 0.08, 20)
 
 
 class TooLittleToLearnError(MocapError):
@@ -56,18 +81,16 @@ class _Known:
 
 @dataclass(frozen=True, eq=False)
 class _Example:
-    """One spoilt take: features and labels, and which half of the takes it belongs to."""
+    """One spoilt take: what is seen of it, labels, and which half its frames belong to."""
 
-    joints: F32
-    root: F32
+    take: int
+    seen: Seen
     labels: NDArray[np.int8]
-    half: int
+    half: NDArray[np.int64]
 
-
-@dataclass(frozen=True, eq=False)
-class _Judge:
-    joints: Forest
-    root: Forest
+    def only(self, half: int) -> _Example:
+        """Take the other half's labels away."""
+        return replace(self, labels=np.where((self.half == half)[:, None], self.labels, -1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,16 +139,45 @@ def learn(
     takes = [replace(one, around=replace(one.around, usual=usual)) for one in takes]
     rng = np.random.default_rng(seed)
     examples = yield from _spoilt_examples(takes, anatomy, rng)
-    yield Progress(0.7, "learning the decision")
-    halves = [[one for one in examples if one.half == half] for half in (0, 1)]
-    judges = []
-    for half in (0, 1):
-        judges.append(_Judge(*_fitted(halves[half] or examples, rng)))
-        yield Progress(0.8 + 0.05 * half, "learning the decision")
-    spans = _span_examples(examples, judges, anatomy)
-    yield Progress(0.9, "learning the decision")
-    forest, root_forest = _fitted(examples, rng)
-    return Decision(names, usual, forest, root_forest, _fit(spans, rng, small=True))
+    yield Progress(0.65, "learning the decision")
+    judges = yield from _judges(examples, rng, 0.65)
+    alone = len(takes) == 1
+    if alone:
+        # Only here: among several takes this would unlearn what is rare but right.
+        examples = _without_suspects(examples, takes, judges)
+        judges = yield from _judges(examples, rng, 0.8)
+    spans = _fit(_span_examples(examples, judges, anatomy), rng, _SMALL)
+    yield Progress(0.95, "learning the decision")
+    return Decision(names, usual, judges if alone else (_fitted(examples, rng, _WHOLE),), spans)
+
+
+def _judges(
+    examples: Sequence[_Example], rng: np.random.Generator, done: float
+) -> Generator[Progress, None, tuple[Judge, Judge]]:
+    """Learn from each half alone, so that either can judge the other."""
+    first = _fitted([one.only(0) for one in examples], rng, _HALF)
+    yield Progress(done + 0.07, "learning the decision")
+    second = _fitted([one.only(1) for one in examples], rng, _HALF)
+    yield Progress(done + 0.14, "learning the decision")
+    return first, second
+
+
+def _without_suspects(
+    examples: Sequence[_Example], takes: Sequence[_Known], judges: tuple[Judge, Judge]
+) -> list[_Example]:
+    """Take what looks wrong in the context itself for unknown: nobody said it is clean."""
+    suspects = {}
+    for i, one in enumerate(takes):
+        seen = examine(one.motion, one.around)
+        if seen is not None:
+            p = crossed(judges, seen, halves(len(seen.joints), i, len(takes)))
+            suspects[i] = windows(p, 2).max(axis=-1) > _SUSPECT
+    return [
+        replace(one, labels=np.where(suspects[one.take] & (one.labels == 0), -1, one.labels))
+        if one.take in suspects
+        else one
+        for one in examples
+    ]
 
 
 def _each_without_itself(motions: Sequence[BodyMotion], anatomy: Anatomy) -> list[_Known]:
@@ -171,9 +223,8 @@ def _spoilt_examples(
             continue
         if variant % 2 and len(one.around.textures) > 2:
             seen = _without_nearest(motion, one, seen, rng)
-        half = (n % len(takes) if len(takes) > 1 else variant) % 2
-        labels = _pooled_labels(label, one.texture)
-        examples.append(_Example(seen.joints, seen.root, labels, half))
+        take, labels = n % len(takes), _pooled_labels(label, one.texture)
+        examples.append(_Example(take, seen, labels, halves(len(labels), take, len(takes))))
     return examples
 
 
@@ -190,32 +241,30 @@ def _pooled_labels(label: NDArray[np.int8], texture: MotionTexture) -> NDArray[n
     return np.where(wrong > 0, 1, np.where(unsure > 0, -1, 0)).astype(np.int8)
 
 
-def _fitted(examples: Sequence[_Example], rng: np.random.Generator) -> tuple[Forest, Forest]:
+def _fitted(examples: Sequence[_Example], rng: np.random.Generator, size: _Size) -> Judge:
     """Learn the decisions on single frames: of joints, and of the root rows."""
-    joints = _Rows.of([(one.joints, one.labels[:, :-2]) for one in examples])
-    root = _Rows.of([(one.root, one.labels[:, -2:]) for one in examples])
-    return _fit(joints, rng), _fit(root, rng)
+    joints = _Rows.of([(one.seen.joints, one.labels[:, :-2]) for one in examples])
+    root = _Rows.of([(one.seen.root, one.labels[:, -2:]) for one in examples])
+    return Judge(_fit(joints, rng, size), _fit(root, rng, _ROOT))
 
 
 def _span_examples(
-    examples: Sequence[_Example], judges: Sequence[_Judge], anatomy: Anatomy
+    examples: Sequence[_Example], judges: tuple[Judge, Judge], anatomy: Anatomy
 ) -> _Rows:
-    """Candidate spans that the decision of the other half of the takes raises."""
+    """Candidate spans that the decision of the other half raises."""
     parts = []
     for one in examples:
-        judge = judges[1 - one.half]
-        joints, root = judge.joints.probability(one.joints), judge.root.probability(one.root)
-        probability = np.hstack([joints, root])
+        probability = crossed(judges, one.seen, one.half)
         found = candidates(probability)
         if found:
-            rows = span_features(probability, one.joints, one.root, anatomy.limb, found)
+            rows = span_features(probability, one.seen.joints, one.seen.root, anatomy.limb, found)
             parts.append((rows, labels_of(one.labels, found)))
     if not parts:
         raise TooLittleToLearnError("no error that was put into the context stands out")
     return _Rows.of(parts)
 
 
-def _fit(examples: _Rows, rng: np.random.Generator, small: bool = False) -> Forest:
+def _fit(examples: _Rows, rng: np.random.Generator, size: _Size) -> Forest:
     # Imported here: scikit-learn takes a second, and only learning needs it.
     from sklearn.ensemble import HistGradientBoostingClassifier
     from threadpoolctl import threadpool_limits
@@ -226,10 +275,10 @@ def _fit(examples: _Rows, rng: np.random.Generator, small: bool = False) -> Fore
     kept = rng.choice(right, min(len(right), _NEGATIVES), replace=False)
     rows = np.concatenate([wrong, kept])
     model = HistGradientBoostingClassifier(
-        max_iter=80 if small else 130,
-        learning_rate=0.08 if small else 0.1,
-        max_leaf_nodes=8 if small else 31,
-        min_samples_leaf=20 if small else 40,
+        max_iter=size.trees,
+        learning_rate=size.rate,
+        max_leaf_nodes=size.leaves,
+        min_samples_leaf=size.least,
         l2_regularization=1.0,
         early_stopping=False,
         random_state=0,
