@@ -14,6 +14,7 @@ from mocapstudio.gui.document import DocumentBridge
 from mocapstudio.gui.jobs import Job, Jobs
 from mocapstudio.gui.messages import Messages
 from mocapstudio.motion.declared import Declared
+from mocapstudio.motion.errors import SkeletonMismatchError
 from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.recording import without_itself
 from mocapstudio.motion.take import Take
@@ -85,9 +86,10 @@ class Analysing(QObject):
         parameters = state.parameters or DetectionParameters()
         parameters = replace(parameters, mode=state.mode, threshold=state.threshold)
         take = document.source(performer)
+        context = without_itself(document.context_takes, take)
         work = _analysis(
             take,
-            without_itself(document.context_takes, take),
+            context,
             parameters,
             document.normal(performer),
             document.protected(performer),
@@ -98,8 +100,11 @@ class Analysing(QObject):
                 return
             document.finish_analysis(performer, generation, analysis)
             count = len(analysis.flags)
-            words = f"{count} flags" if count != 1 else "1 flag"
-            self._messages.tell(f"{take.name}: {words}.")
+            words = f"{take.name}: {count} flags" if count != 1 else f"{take.name}: 1 flag"
+            unused = len(context) - len(analysis.context)
+            if unused:
+                words += f"; {unused} takes of the context have another skeleton and were not used"
+            self._messages.tell(f"{words}.")
             if parameters.mode == CALIBRATED and settings.flag("learn", True):
                 self._refine(performer, parameters)
 
@@ -159,8 +164,17 @@ def _analysis(
     # The first import compiles or loads the kernels: that belongs in the thread too.
     yield Progress(0.0, "loading the engine")
     from mocapstudio.cleaning.detection import detect
+    from mocapstudio.similarity.texture import comparable_joints
 
-    return (yield from detect(take, context, parameters, normal=normal, protected=protected))
+    def usable(other: Take) -> bool:
+        try:
+            comparable_joints(take, [other])
+        except SkeletonMismatchError:
+            return False
+        return True
+
+    alike = tuple(other for other in context if usable(other))
+    return (yield from detect(take, alike, parameters, normal=normal, protected=protected))
 
 
 def _refined(

@@ -6,6 +6,7 @@ pool; everything it reports arrives in the thread of `Jobs`, which is the desk's
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
 import threading
@@ -94,7 +95,12 @@ class _Runner(QRunnable):
             self._work.close()
         except BaseException as error:
             message = _Message(self._job, "failed", error)
-        self._report(message)
+        self._tell(message)
+
+    def _tell(self, message: _Message) -> None:
+        # A desk that was closed meanwhile no longer listens.
+        with contextlib.suppress(RuntimeError):
+            self._report(message)
 
     def _drive(self) -> _Message:
         reported = 0.0
@@ -106,7 +112,7 @@ class _Runner(QRunnable):
             now = time.monotonic()
             if now - reported >= _REPORT_EVERY:
                 reported = now
-                self._report(_Message(self._job, "progress", progress))
+                self._tell(_Message(self._job, "progress", progress))
         return _Message(self._job, "cancelled", None)
 
 

@@ -15,6 +15,7 @@ from mocapstudio.gui.document import DocumentBridge
 from mocapstudio.gui.jobs import Jobs
 from mocapstudio.gui.messages import Messages
 from mocapstudio.gui.trouble import Trouble, understand
+from mocapstudio.motion.errors import SkeletonMismatchError
 from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.recording import same_recording
 from mocapstudio.motion.take import Take
@@ -52,6 +53,23 @@ def reading(paths: Sequence[Path], doing: str) -> Generator[Progress, None, Read
         else:
             result.takes += takes
             result.reports.append(report)
+    return result
+
+
+def reading_context(
+    paths: Sequence[Path], doing: str, take: Take | None
+) -> Generator[Progress, None, Read]:
+    """Read a context; what has another skeleton than the take under review is left out too."""
+    result = yield from reading(paths, doing)
+    if take is not None:
+        from mocapstudio.similarity.texture import comparable_joints
+
+        for other in list(result.takes):
+            try:
+                comparable_joints(take, [other])
+            except SkeletonMismatchError as error:
+                result.takes.remove(other)
+                result.troubles.append(understand(error, doing))
     return result
 
 
@@ -119,11 +137,11 @@ class Opening(QObject):
             self._bridge.document.set_context((), ())
             return
         doing = "This could not be used as context"
-        self._read(
-            wanted,
+        self._jobs.start(
             "Reading the context",
-            doing,
+            reading_context(wanted, doing, self._bridge.state.take),
             lambda read: self._use_context(read, wanted),
+            lambda error: self._messages.complain(error, doing),
             key="context",
         )
 
@@ -160,14 +178,12 @@ class Opening(QObject):
         title: str,
         doing: str,
         done: Callable[[Read], None],
-        key: str | None = None,
     ) -> None:
         self._jobs.start(
             title,
             reading(paths, doing),
             done,
             lambda error: self._messages.complain(error, doing),
-            key=key,
         )
 
     def _take_in(self, read: Read, paths: list[Path], *, partner: bool) -> None:

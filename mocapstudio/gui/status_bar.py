@@ -38,6 +38,7 @@ class DeskStatusBar(QStatusBar):
         self._link = QPushButton("Show in folder")
         self._link.setObjectName("note-link")
         self._link.setProperty("role", "link")
+        self._link.setToolTip("Open the folder that the file lies in")
         self._link.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self._link.setCursor(Qt.CursorShape.PointingHandCursor)
         self._link.clicked.connect(self._show_folder)

@@ -125,6 +125,8 @@ LIGHT = Theme(
 
 THEMES = {theme.name: theme for theme in (DARK, LIGHT)}
 
+_STYLED = "mocapstudio-styled"
+
 _current = DARK
 
 
@@ -137,9 +139,12 @@ def apply(app: QApplication, theme: Theme) -> None:
     """Put a theme in force: palette, type and style sheet of the whole application."""
     global _current
     _current = theme
-    app.setStyle("Fusion")
+    if app.property(_STYLED) is None:
+        # Once only: exchanging the style under living windows with a style sheet crashes Qt.
+        app.setStyle("Fusion")
+        app.setFont(_font())
+        app.setProperty(_STYLED, True)
     app.setPalette(_palette(theme))
-    app.setFont(_font())
     icons = resource("icons").as_posix()
     sheet = Template(resource("styles", "desk.qss").read_text("utf-8"))
     app.setStyleSheet(sheet.substitute(asdict(theme), icons=icons))

@@ -66,7 +66,12 @@ class Hands:
         self.see(lambda: self.shows(name))
         widget = self.find(name)
         assert widget.isEnabled(), f"{name} is disabled"
-        QTest.mouseClick(widget, LEFT, modifier, widget.rect().center())
+        self._hit(widget, widget.rect().center(), modifier)
+
+    def _hit(self, widget: QWidget, at: QPoint, modifier=NONE) -> None:
+        """Click what lies uppermost there, as a mouse does."""
+        target = widget.childAt(at) or widget
+        QTest.mouseClick(target, LEFT, modifier, target.mapFrom(widget, at))
 
     def press(self, keys: str, modifier=NONE) -> None:
         """Press keys one after the other, wherever the focus is."""
@@ -81,7 +86,7 @@ class Hands:
     def type(self, name: str, text: str, *, enter: bool = True) -> None:
         """Click into a text field, replace what is in it, and press Enter."""
         field = self.find(name)
-        QTest.mouseClick(field, LEFT, NONE, QPoint(8, field.height() // 2))
+        self._hit(field, QPoint(8, field.height() // 2))
         target = QApplication.focusWidget()
         assert target is not None
         QTest.keyClick(target, Qt.Key.Key_A, CTRL)
@@ -96,8 +101,9 @@ class Hands:
         action = _entry(bar.actions(), path[0])
         QTest.mouseClick(bar, LEFT, NONE, bar.actionGeometry(action).center())
         for words in path[1:]:
-            popup = QApplication.activePopupWidget()
+            popup = action.menu()
             assert isinstance(popup, QMenu)
+            self.see(popup.isVisible)
             action = _entry(popup.actions(), words)
             assert action.isEnabled(), f"{words} is disabled"
             QTest.mouseClick(popup, LEFT, NONE, popup.actionGeometry(action).center())

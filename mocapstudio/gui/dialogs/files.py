@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QFileDialog, QWidget
 
 from mocapstudio.formats.registry import readable_suffixes
 from mocapstudio.gui import settings
+from mocapstudio.gui.dialogs.question import confirm
 
 
 @dataclass(frozen=True)
@@ -67,7 +68,16 @@ def ask_for_folder(
 def ask_where_to_write(
     parent: QWidget, title: str, start: Path, filters: str, done: Callable[[Path], object]
 ) -> None:
-    """Ask for a file to write; the dialog itself asks before one is replaced."""
+    """Ask for a file to write, and again before one is replaced."""
+
+    def chosen(name: str) -> None:
+        path = Path(name)
+        if path.exists():
+            words = f"It lies in {path.parent}. What is in it will be lost."
+            confirm(parent, f"Replace {path.name}?", words, "Replace", lambda: done(path))
+        else:
+            done(path)
+
     dialog = _dialog(parent, title, "")
     dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
     dialog.setFileMode(QFileDialog.FileMode.AnyFile)
@@ -75,7 +85,9 @@ def ask_where_to_write(
     dialog.setDefaultSuffix(start.suffix.lstrip("."))
     dialog.setDirectory(str(start.parent))
     dialog.selectFile(start.name)
-    dialog.fileSelected.connect(lambda name: done(Path(name)))
+    # Its own question would nest an event loop.
+    dialog.setOption(QFileDialog.Option.DontConfirmOverwrite)
+    dialog.fileSelected.connect(chosen)
     dialog.open()
 
 

@@ -1,0 +1,140 @@
+"""How the desk looks: sizes, themes, what it remembers, what it says while it is empty."""
+
+from __future__ import annotations
+
+import pytest
+from hands import CTRL, Hands
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QLabel, QPushButton, QSplitter
+
+from mocapstudio.gui import theme
+
+
+def open_take(hands: Hands, path) -> None:
+    hands.press("O", CTRL)
+    hands.answer_file_dialog(path)
+    hands.see(lambda: len(hands.rows()) > 2, 60)
+
+
+def cut_texts(window) -> list[str]:
+    """What stands on buttons and labels that are too small for it."""
+    cut = [
+        button.text()
+        for button in window.findChildren(QPushButton)
+        if button.isVisible() and button.width() < button.minimumSizeHint().width()
+    ]
+    for one in window.findChildren(QLabel):
+        words = one.text()
+        shortened = one.wordWrap() or hasattr(one, "full") or "<" in words
+        if not one.isVisible() or shortened or not words:
+            continue
+        if one.fontMetrics().horizontalAdvance(words) > one.width():
+            cut.append(words)
+    return cut
+
+
+@pytest.mark.parametrize("size", [(1440, 900), (1280, 720)])
+@pytest.mark.parametrize("name", ["dark", "light"])
+def test_nothing_is_cut_off(open_desk, qtbot, generated, size, name):
+    hands = Hands(open_desk(*size), qtbot)
+    if name == "light":
+        hands.menu("View", "Light Theme")
+        assert theme.current() is theme.LIGHT
+    open_take(hands, generated.take)
+    hands.press("N")
+    hands.see(lambda: hands.shows("neighbour-1") or hands.shows("neighbours-note"))
+    assert (hands.window.width(), hands.window.height()) == size
+    hands.see(lambda: cut_texts(hands.window) == [])
+    if name == "light":
+        hands.menu("View", "Light Theme")
+
+
+def test_the_viewport_shows_a_skeleton_in_the_window(hands, generated):
+    open_take(hands, generated.take)
+    viewport = hands.find("viewport")
+
+    def colours() -> int:
+        picture = viewport.grab().toImage()
+        width, height = picture.width(), picture.height()
+        middle = {
+            picture.pixel(x, y)
+            for x in range(width // 4, 3 * width // 4, 3)
+            for y in range(height // 4, 3 * height // 4, 3)
+        }
+        return len(middle)
+
+    hands.see(lambda: colours() > 200)
+
+
+def test_layout_and_theme_are_remembered(open_desk, qtbot, generated):
+    hands = Hands(open_desk(), qtbot)
+    open_take(hands, generated.take)
+    hands.press("4", CTRL)
+    hands.see(lambda: not hands.shows("curves"))
+    splitter = hands.find("columns", QSplitter)
+    splitter.setSizes([400, 700, 340])
+    sizes = splitter.sizes()
+    hands.menu("View", "Light Theme")
+    hands.window.close()
+
+    other = Hands(open_desk(1000, 700), qtbot)
+    assert (other.window.width(), other.window.height()) != (1440, 900)
+    other.window.resize(1440, 900)
+    open_take(other, generated.take)
+    assert not other.shows("curves")
+    assert other.find("columns", QSplitter).sizes() == sizes
+    assert other.window.bridge.ui.theme == "light"
+    other.menu("View", "Reset Layout")
+    other.see(lambda: other.shows("curves"))
+    other.menu("View", "Light Theme")
+
+
+def test_the_frame_box_speaks_the_files_numbers_and_gives_the_keys_back(hands, generated):
+    open_take(hands, generated.take)
+    first = hands.find("frame").minimum()
+    hands.type("frame", str(first + 120))
+    hands.see(lambda: hands.text("time") == "2.00 s")
+    hands.key(Qt.Key.Key_Right)
+    hands.see(lambda: hands.find("frame").value() == first + 121)
+    hands.key(Qt.Key.Key_Left, Qt.KeyboardModifier.ShiftModifier)
+    hands.see(lambda: hands.find("frame").value() == first + 111)
+    hands.key(Qt.Key.Key_Home)
+    hands.see(lambda: hands.find("frame").value() == first)
+
+
+def test_space_plays_wherever_the_focus_is(hands, generated):
+    open_take(hands, generated.take)
+    for widget in ("queue-table", "digression-map", "viewport"):
+        hands.find(widget).setFocus()
+        before = hands.find("frame").value()
+        hands.key(Qt.Key.Key_Space)
+        hands.see(lambda before=before: hands.find("frame").value() > before + 3)
+        hands.key(Qt.Key.Key_Space)
+        hands.see(lambda: not hands.window.bridge.ui.playing)
+
+
+def test_the_threshold_flags_again_at_once(hands, generated):
+    open_take(hands, generated.take)
+    count = len(hands.rows())
+    for _ in range(10):
+        hands.key(Qt.Key.Key_Minus)
+    assert hands.text("threshold-value") == "0.30"
+    assert len(hands.rows()) > count
+    for _ in range(30):
+        hands.key(Qt.Key.Key_Plus)
+    assert hands.text("threshold-value") == "0.90"
+    assert len(hands.rows()) < count
+
+
+def test_trim_in_and_out(hands, generated):
+    open_take(hands, generated.take)
+    first = hands.find("frame").minimum()
+    hands.type("frame", str(first + 100))
+    hands.press("I")
+    hands.type("frame", str(first + 999))
+    hands.press("O")
+    hands.see(lambda: f"trimmed to {first + 100}–{first + 999}" in hands.text("facts"))
+    hands.press("Z", CTRL)
+    hands.see(lambda: f"trimmed to {first + 100}–{first + 1199}" in hands.text("facts"))
+    hands.press("I", Qt.KeyboardModifier.ShiftModifier)
+    hands.see(lambda: "trimmed" not in hands.text("facts"))
