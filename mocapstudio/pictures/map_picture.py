@@ -111,10 +111,10 @@ def _outline(
     boxes = []
     for flag in analysis.flags:
         start, end = analysis.take.seconds(flag.start), analysis.take.seconds(flag.end)
-        # A flag of one frame must still be seen.
-        wider = max(0.0, 4 * pixel - (end - start)) / 2
-        left, top = start - wider, at[flag.joint] - 0.46
-        boxes.append(Rectangle((left, top), end - start + 2 * wider, 0.92))
+        # A rim of ground sets the outline off, and lets a flag of one frame be seen.
+        rim = 3 * pixel
+        corner = (start - rim, at[flag.joint] - 0.48)
+        boxes.append(Rectangle(corner, end - start + 2 * rim, 0.96))
     axes.add_collection(
         PatchCollection(boxes, facecolor="none", edgecolor=palette.open, linewidth=1.0)
     )
