@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,11 +78,15 @@ def topology(skeleton: Skeleton) -> Topology:
 
 def side_of(name: str) -> str:
     """``"left"``, ``"right"`` or ``""``, as a joint's name tells."""
-    spaced = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name.split(":")[-1])
-    spaced = spaced.lower()
+    spaced = _spaced(name)
     if _LEFT.search(spaced):
         return "left"
     return "right" if _RIGHT.search(spaced) else ""
+
+
+def _spaced(name: str) -> str:
+    spaced = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name.split(":")[-1])
+    return spaced.lower()
 
 
 def _hips(skeleton: Skeleton) -> int:
@@ -101,19 +106,35 @@ def _mirror(skeleton: Skeleton, hips: int) -> NDArray[np.int64]:
 
     def pair(a: int, b: int) -> None:
         mirror[a], mirror[b] = b, a
-        for c, d in zip(skeleton.children[a], skeleton.children[b], strict=True):
-            pair(c, d)
+        for alike in (_namesakes, _same_shape):
+            for c in skeleton.children[a]:
+                free = (d for d in skeleton.children[b] if mirror[d] == d)
+                twin = next((d for d in free if alike(skeleton, c, d)), None)
+                if mirror[c] == c and twin is not None:
+                    pair(c, twin)
 
     for joint in range(len(skeleton)):
         if mirror[joint] != joint:
             continue
-        free = [c for c in skeleton.children[joint] if mirror[c] == c]
-        for i, a in enumerate(free):
-            for b in free[i + 1 :]:
-                alike = _shape(skeleton, a) == _shape(skeleton, b)
-                if mirror[a] == a and mirror[b] == b and alike and _opposite(skeleton, a, b):
+        for alike in (_namesakes, _same_shape):
+            for a, b in combinations(skeleton.children[joint], 2):
+                free = mirror[a] == a and mirror[b] == b
+                if free and alike(skeleton, a, b) and _opposite(skeleton, a, b):
                     pair(a, b)
     return mirror
+
+
+def _same_shape(skeleton: Skeleton, a: int, b: int) -> bool:
+    return _shape(skeleton, a) == _shape(skeleton, b)
+
+
+def _namesakes(skeleton: Skeleton, a: int, b: int) -> bool:
+    """Tell whether two names differ in their side alone; a prop in one hand changes its shape."""
+    one, other = skeleton.names[a], skeleton.names[b]
+    if side_of(one) == "right":
+        one, other = other, one
+    opposite = (side_of(one), side_of(other)) == ("left", "right")
+    return opposite and _LEFT.sub("", _spaced(one)) == _RIGHT.sub("", _spaced(other))
 
 
 def _opposite(skeleton: Skeleton, a: int, b: int) -> bool:
@@ -151,7 +172,10 @@ def _details(skeleton: Skeleton, mirror: NDArray[np.int64]) -> list[int]:
 
 
 def _limbs(skeleton: Skeleton, hips: int, mirror: NDArray[np.int64]) -> list[Limb]:
-    trunk = [j for j in range(len(skeleton)) if mirror[j] == j]
+    trunk: list[int] = []
+    for j in range(len(skeleton)):
+        if mirror[j] == j and (j == 0 or int(skeleton.parents[j]) in trunk):
+            trunk.append(j)
     starts = [j for j in range(len(skeleton)) if j not in trunk and skeleton.parents[j] in trunk]
     tail = _head_chain(skeleton, trunk, starts)
     limbs = [Limb("spine", tuple(j for j in trunk if j not in tail))]
@@ -177,7 +201,12 @@ def _head_chain(skeleton: Skeleton, trunk: list[int], starts: list[int]) -> list
     if not shoulders:
         return []
     top = max(shoulders, key=lambda j: len(skeleton.ancestors(j)))
-    return [j for j in trunk if top in skeleton.ancestors(j)]
+    branches = [j for j in trunk if skeleton.parents[j] == top]
+    if not branches:
+        return []
+    # A tail or a pack beside the neck is no head.
+    head = set(skeleton.descendants(max(branches, key=lambda j: len(skeleton.descendants(j)))))
+    return [j for j in trunk if j in head]
 
 
 def _lateral_side(skeleton: Skeleton, start: int, mirror: NDArray[np.int64]) -> str:
