@@ -103,6 +103,9 @@ def _measure(
     departure: Callable[[Array, int], Array],
 ) -> OwnRate:
     frames = len(values)
+    # What a natural acceleration bends between frames grows fast where the rate is low.
+    coarse = max(1.0, 60.0 / rate) ** 1.5
+    least_pop, least_jitter = least_pop * coarse, least_jitter * coarse
     reach = max(1, round(POP_SECONDS * rate / 2))
     pops = np.zeros(values.shape[:2], dtype=np.float32)
     for step in sorted({1, reach, 2 * reach}):

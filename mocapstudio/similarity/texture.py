@@ -12,12 +12,14 @@ from numpy.typing import NDArray
 from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.errors import MocapError, SkeletonMismatchError
 from mocapstudio.motion.facing import hips_world, split_heading
+from mocapstudio.motion.skeleton import Skeleton
 from mocapstudio.motion.take import Take
 from mocapstudio.motion.topology import topology
 
 F32 = NDArray[np.float32]
 
 TEXTURE_RATE = 24
+TRAVEL = ("forward", "sideways", "height", "clearance", "slide")
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,8 +34,9 @@ class MotionTexture:
         (T, m, 4) float32 local rotations, sign-continuous; of the hips only the tilt, the facing
         direction removed.
     travel
-        (T, 3) float32: forward speed and sideways speed (m/s, in the body's facing), height (m)
-        of the hips.
+        (T, 5) float32, see `TRAVEL`: forward and sideways speed of the hips (m/s, in the body's
+        facing) and their height (m); height of the lowest foot (m) and speed of the slowest one
+        (m/s), which hardly vary while a foot stands.
     turning
         (T,) float32: turning rate of the heading, rad/s.
     start
@@ -80,6 +83,8 @@ class BodyMotion:
         Frames a second.
     start
         The take's frame that is the first here.
+    chains
+        For each foot its joints from the hips outward: column in `rotations` and offset (3,).
     """
 
     joints: tuple[str, ...]
@@ -88,9 +93,29 @@ class BodyMotion:
     position: NDArray[np.float64]
     rate: float
     start: int
+    chains: tuple[tuple[tuple[int, NDArray[np.float64]], ...], ...] = ()
 
     def __len__(self) -> int:
         return len(self.rotations)
+
+    @cached_property
+    def feet(self) -> NDArray[np.float64]:
+        """(F, n, 3) metres: the feet in the world; (F, 1, 3) the hips where there are none."""
+        turn = rot.about_axis(1, self.heading)
+        places = [self.position]
+        for chain in self.chains:
+            place, world = self.position, turn
+            for column, offset in chain:
+                place = place + rot.rotate(world, offset[None])
+                world = rot.multiply(world, self.rotations[:, column])
+            places.append(place)
+        return np.stack(places[1:] or places, axis=1)
+
+    @cached_property
+    def slide(self) -> NDArray[np.float64]:
+        """(F,) m/s: horizontal speed of the slowest foot."""
+        steps = np.gradient(self.feet[..., [0, 2]], axis=0) * self.rate
+        return np.asarray(np.linalg.norm(steps, axis=-1).min(axis=1))
 
 
 def body_motion(take: Take, joints: Sequence[str]) -> BodyMotion:
@@ -104,7 +129,26 @@ def body_motion(take: Take, joints: Sequence[str]) -> BodyMotion:
     if hips in columns:
         local = local.copy()
         local[:, columns.index(hips)] = rot.continuous(tilt)
-    return BodyMotion(tuple(joints), local, heading, position, float(take.rate), first)
+    chains = _foot_chains(take.skeleton, tuple(joints))
+    return BodyMotion(tuple(joints), local, heading, position, float(take.rate), first, chains)
+
+
+def _foot_chains(
+    skeleton: Skeleton, joints: tuple[str, ...]
+) -> tuple[tuple[tuple[int, NDArray[np.float64]], ...], ...]:
+    """Chains from the hips to the last two compared joints of every leg."""
+    parts = topology(skeleton)
+    column = {skeleton.index[name]: i for i, name in enumerate(joints)}
+    chains = []
+    for limb in parts.limbs:
+        feet = [j for j in limb.joints if j in column][-2:] if limb.name.endswith("leg") else []
+        for foot in feet:
+            above = [j for j in reversed(skeleton.ancestors(foot)) if j in column]
+            if parts.hips not in above:
+                continue
+            offsets = [np.zeros(3), *(skeleton.offsets[j] for j in (*above[1:], foot))]
+            chains.append(tuple(zip([column[j] for j in (*above, foot)], offsets, strict=True)))
+    return tuple(chains)
 
 
 def texture_of(motion: BodyMotion) -> MotionTexture:
@@ -126,10 +170,12 @@ def texture_of(motion: BodyMotion) -> MotionTexture:
     sine, cosine = np.sin(heading), np.cos(heading)
     forward = velocity[:, 0] * sine + velocity[:, 2] * cosine
     sideways = velocity[:, 0] * cosine - velocity[:, 2] * sine
+    clearance = _sample(motion.feet[..., 1].min(axis=1), at)
+    travel = [forward, sideways, position[:, 1], clearance, _sample(motion.slide, at)]
     return MotionTexture(
         motion.joints,
         np.ascontiguousarray(quaternions, dtype=np.float32),
-        np.stack([forward, sideways, position[:, 1]], axis=-1).astype(np.float32),
+        np.stack(travel, axis=-1).astype(np.float32),
         (np.gradient(heading) * TEXTURE_RATE).astype(np.float32),
         motion.start,
         each,

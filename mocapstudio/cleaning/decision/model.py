@@ -108,10 +108,11 @@ def examine(motion: BodyMotion, around: Surroundings, barred: Sequence[int] = ()
         # A take that is its own context brings its errors along, in the examples as in earnest.
         around = replace(around, moments=moments_of(texture, around.centre))
     rates = pooled(own_rate.of_motion(motion), texture)
+    slide = pool(motion.slide.astype(np.float32)[:, None], texture)[:, 0]
     matches = match(texture, around.textures, around.limb, barred)
     return Seen(
         features(texture, around, matches, rates),
-        root_features(texture, list(around.textures), matches, rates),
+        root_features(texture, list(around.textures), matches, rates, slide),
         matches,
     )
 

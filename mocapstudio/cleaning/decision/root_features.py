@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 from mocapstudio.cleaning.decision.features import moved, running_median, windows
 from mocapstudio.cleaning.decision.matching import Matches
 from mocapstudio.cleaning.own_rate import OwnRate
-from mocapstudio.similarity.texture import TEXTURE_RATE, MotionTexture
+from mocapstudio.similarity.texture import TEXTURE_RATE, TRAVEL, MotionTexture
 
 F32 = NDArray[np.float32]
 
-_SIGNALS = ("forward", "sideways", "rise", "height", "turning")
+_SIGNALS = (*TRAVEL, "rise", "turning")
 NAMES = (
     *(f"{name} {what}" for name in _SIGNALS for what in ("context", "own", "spread")),
     *(f"{name} {what}" for name in _SIGNALS for what in ("size", "change")),
@@ -20,12 +20,16 @@ NAMES = (
     "place pop", "place jitter", "heading pop", "heading jitter",
     "place pop around", "heading pop around",
     "height context 6 before", "height context 6 after",
-    "heading onset lowest", "heading onset highest", "row",
+    "heading onset lowest", "heading onset highest", "slide highest", "clearance onset", "row",
 )  # fmt: skip
 
 
 def root_features(
-    texture: MotionTexture, textures: list[MotionTexture], matches: Matches, rates: OwnRate
+    texture: MotionTexture,
+    textures: list[MotionTexture],
+    matches: Matches,
+    rates: OwnRate,
+    slide: F32,
 ) -> F32:
     """Assemble the features of root position and root heading.
 
@@ -39,6 +43,8 @@ def root_features(
         From `matching.match`.
     rates
         Pops and jitter pooled to 24 fps; the last two columns are the root rows.
+    slide
+        (S,) highest speed of the slowest foot around each frame, m/s.
 
     Returns
     -------
@@ -50,10 +56,11 @@ def root_features(
     context, spread = _departure(mine, signals, matches.found, matches, shift)
     own, _ = _departure(mine, signals, matches.own_found, matches, shift)
     # Another floor or body height is no error.
-    height = _SIGNALS.index("height")
+    height, clearance = _SIGNALS.index("height"), _SIGNALS.index("clearance")
     for away in (context, own):
-        known = np.isfinite(away[:, height])
-        away[:, height] -= np.median(away[known, height]) if known.any() else 0.0
+        for column in (height, clearance):
+            known = np.isfinite(away[:, column])
+            away[:, column] -= np.median(away[known, column]) if known.any() else 0.0
     columns = [x for i in range(len(_SIGNALS)) for x in (context[:, i], own[:, i], spread[:, i])]
     columns += [x for v in mine.T for x in (np.abs(v), np.abs(np.gradient(v)))]
     turned = np.cumsum(mine[:, _SIGNALS.index("turning")])[:, None] / TEXTURE_RATE
@@ -68,7 +75,8 @@ def root_features(
         windows(rates.pops[:, -2:-1], 2).max(axis=-1)[:, 0],
         windows(rates.pops[:, -1:], 2).max(axis=-1)[:, 0],
         moved(context[:, height], -6), moved(context[:, height], 6),
-        windows(onset, 6).min(axis=-1)[:, 0], windows(onset, 6).max(axis=-1)[:, 0],
+        windows(onset, 6).min(axis=-1)[:, 0], windows(onset, 6).max(axis=-1)[:, 0], slide,
+        np.abs(mine[:, clearance] - running_median(mine[:, clearance : clearance + 1], 36)[:, 0]),
     ]  # fmt: skip
     both = np.repeat(np.stack(columns, axis=-1)[:, None], 2, axis=1)
     row = np.broadcast_to(np.array([0.0, 1.0])[None, :, None], (*both.shape[:2], 1))
@@ -76,17 +84,16 @@ def root_features(
 
 
 def _signals(texture: MotionTexture) -> F32:
-    """(S, 5): forward and sideways speed, rise (m/s), height (m), turning rate (rad/s)."""
-    height = texture.travel[:, 2]
-    rise = np.gradient(height) * TEXTURE_RATE
-    stacked = np.stack([*texture.travel[:, :2].T, rise, height, texture.turning], axis=-1)
+    """(S, 7): what `TRAVEL` names, rise (m/s) and turning rate (rad/s)."""
+    rise = np.gradient(texture.travel[:, TRAVEL.index("height")]) * TEXTURE_RATE
+    stacked = np.column_stack([texture.travel, rise, texture.turning])
     return np.asarray(stacked, dtype=np.float32)
 
 
 def _departure(
     mine: F32, signals: F32, found: NDArray[np.int32], matches: Matches, shift: NDArray[np.int64]
 ) -> tuple[F32, F32]:
-    """Difference to the neighbours' median and their spread, (S, 5) each; NaN without any."""
+    """Difference to the neighbours' median and their spread, (S, 7) each; NaN without any."""
     at = found[matches.centre_of, -1]
     there = at >= 0
     values = np.where(there[..., None], signals[np.maximum(at, 0) + shift[:, None]], np.nan)

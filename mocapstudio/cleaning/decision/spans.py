@@ -15,7 +15,7 @@ from mocapstudio.cleaning.decision.root_features import NAMES as ROOT_NAMES
 F32 = NDArray[np.float32]
 
 CANDIDATE = 0.15
-RARER = 4.0
+RARER = 6.0
 """How many times more errors a minute the examples hold than takes that need cleaning do."""
 _BRIDGE = 2
 _WATCHED = (
@@ -25,6 +25,7 @@ _WATCHED = (
 _ROOT_WATCHED = (
     "height context", "height own", "height onset", "heading onset", "turning context",
     "rise context", "forward context", "place pop", "heading pop", "forward change", "rise change",
+    "clearance context", "clearance onset", "slide context", "slide highest",
 )  # fmt: skip
 _SURROUNDING = ("context distance", "context spread", "own distance", "body others", "speed")
 NAMES = (
