@@ -211,7 +211,8 @@ def smallest_minima(distances: F32, breaks: I64, keep: int, barred: I64, found: 
     distances
         (T',) one value a target word; words not to be used hold values of 1e29 or more.
     breaks
-        (B,) ascending: first word of every take; a minimum never looks across one.
+        (B,) ascending: first word of every take; a minimum never looks across one. A flat bottom
+        is one minimum, at its first word.
     barred
         (2,) half-open span of words too close to the source, skipped.
     found
@@ -233,7 +234,10 @@ def smallest_minima(distances: F32, breaks: I64, keep: int, barred: I64, found: 
             last = breaks[segment + 1]
         if t > breaks[segment] and distances[t - 1] <= here:
             continue
-        if t + 1 < last and distances[t + 1] < here:
+        after = t + 1
+        while after < last and distances[after] == here:
+            after += 1
+        if after < last and distances[after] < here:
             continue
         if count == keep and here >= distances[found[count - 1]]:
             continue
