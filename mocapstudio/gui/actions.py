@@ -135,6 +135,7 @@ class Actions(QObject):
             "follow": ui.follow,
             "trails": ui.trails,
             "theme": ui.theme == "light",
+            "learning": ui.learning,
         }.items():
             self._actions[name].setChecked(on)
 

@@ -16,7 +16,7 @@ from mocapstudio.gui.messages import Messages
 from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.errors import SkeletonMismatchError
 from mocapstudio.motion.progress import Progress
-from mocapstudio.motion.recording import without_itself
+from mocapstudio.motion.recording import same_recording, without_itself
 from mocapstudio.motion.take import Take
 from mocapstudio.review.state import DocumentState
 
@@ -105,8 +105,8 @@ class Analysing(QObject):
             if unused:
                 words += f"; {unused} takes of the context have another skeleton and were not used"
             self._messages.tell(f"{words}.")
-            if parameters.mode == CALIBRATED and settings.flag("learn", True):
-                self._refine(performer, parameters)
+            if parameters.mode == CALIBRATED and self._bridge.ui.learning:
+                self._refine(performer, parameters, analysis.context)
 
         self._job = self._jobs.start(
             f"Analysing {take.name}",
@@ -118,14 +118,24 @@ class Analysing(QObject):
         self._job.ended.connect(self._tell)
         self._tell()
 
-    def _refine(self, performer: str, parameters: DetectionParameters) -> None:
+    def toggle_learning(self) -> None:
+        """Learn from the context, or leave the map as it is first drawn."""
+        learning = not self._bridge.ui.learning
+        settings.set_flag("learning", learning)
+        self._bridge.set_ui(learning=learning)
+        self.again()
+
+    def _refine(
+        self, performer: str, parameters: DetectionParameters, context: tuple[Take, ...]
+    ) -> None:
         """Learn from the context behind the first map, then draw the map anew."""
         document = self._bridge.document
         generation = document.begin_analysis(performer)
         take = document.source(performer)
+        alike = [t for t in document.context_takes if t in context or same_recording(t, take)]
         work = _refined(
             take,
-            document.context_takes,
+            tuple(alike),
             parameters,
             document.normal(performer),
             document.protected(performer),

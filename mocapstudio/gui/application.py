@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import TracebackType
 
@@ -81,21 +81,22 @@ def _check_display() -> None:
         raise MocapError("no display: neither DISPLAY nor WAYLAND_DISPLAY is set")
 
 
-def _catch_faults(complain: object) -> None:
+def _catch_faults(complain: Callable[[BaseException, str], None]) -> None:
     """Show exceptions that nobody caught; the desk stays open."""
-    assert callable(complain)
-    told: list[str] = []
+    told: set[str] = set()
 
     def hook(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
-        sys.__excepthook__(kind, error, trace)
         if issubclass(kind, KeyboardInterrupt):
             QApplication.exit(130)
             return
+        if isinstance(error, MocapError):
+            complain(error, "This could not be done")
+            return
+        sys.__excepthook__(kind, error, trace)
         # What goes wrong at every frame must not fill the screen with dialogs.
         fault = f"{kind.__name__}: {error}"
         if fault not in told:
-            told.append(fault)
-            doing = "This could not be done" if isinstance(error, MocapError) else "Internal fault"
-            complain(error, doing)
+            told.add(fault)
+            complain(error, "Internal fault")
 
     sys.excepthook = hook

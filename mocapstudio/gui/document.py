@@ -32,6 +32,8 @@ class UiState:
         Share of real time at which the take plays: 0.25, 0.5 or 1.
     trails
         Whether end effectors of the selection leave trails.
+    learning
+        Whether the first map is refined by what is learnt from the context.
     analysing
         Whether the take under review is being analysed.
     theme
@@ -45,6 +47,7 @@ class UiState:
     loop: bool = False
     speed: float = 1.0
     trails: bool = True
+    learning: bool = True
     analysing: bool = False
     theme: str = "dark"
 

@@ -118,7 +118,7 @@ class MainWindow(QMainWindow):
             self.resize(_SIZE.boundedTo(screen.size()))
             self.move(screen.topLeft())
         self.workspace.restore()
-        self.bridge.set_ui(theme=theme.current().name)
+        self.bridge.set_ui(theme=theme.current().name, learning=settings.flag("learning", True))
 
     def _follow(self, old: DocumentState, new: DocumentState) -> None:
         if old is not new and only_frame_differs(old, new):

@@ -48,6 +48,7 @@ def _wire_files(window: MainWindow) -> None:
     window.drops.dropped.connect(files.drop)
     on("analyse", window.analysing.again)
     on("cancel", window.jobs.cancel)
+    on("learning", window.analysing.toggle_learning)
     on("threshold-up", partial(window.toolbar.step_threshold, _THRESHOLD_STEP))
     on("threshold-down", partial(window.toolbar.step_threshold, -_THRESHOLD_STEP))
     on("calibrated", lambda: _set_mode(window, CALIBRATED))

@@ -51,6 +51,8 @@ def counts(hands: Hands, word: str) -> int:
 
 def open_everything(hands: Hands, salsa: Path) -> None:
     """The take by the menu, the partner by its button, the context by its dialog."""
+    # What is learnt meanwhile would rearrange the queue under these hands.
+    hands.menu("Analysis", "Learn from the Context")
     hands.menu("File", "Open")
     hands.answer_file_dialog(salsa / "60_10_scaled.bvh")
     hands.see(lambda: len(hands.rows()) > 5, 90)

@@ -11,6 +11,9 @@ from mocapstudio.gui import theme
 
 
 def open_take(hands: Hands, path) -> None:
+    # What is learnt meanwhile would rearrange the queue under these hands.
+    if hands.window.bridge.ui.learning:
+        hands.menu("Analysis", "Learn from the Context")
     hands.press("O", CTRL)
     hands.answer_file_dialog(path)
     hands.see(lambda: len(hands.rows()) > 2, 60)

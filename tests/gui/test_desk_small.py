@@ -17,6 +17,8 @@ def verdicts(hands) -> list[str]:
 
 
 def open_take(hands, generated) -> None:
+    # What is learnt meanwhile would rearrange the queue under these hands.
+    hands.menu("Analysis", "Learn from the Context")
     hands.press("O", CTRL)
     hands.answer_file_dialog(generated.take)
     hands.see(lambda: len(hands.rows()) > 2, 60)
