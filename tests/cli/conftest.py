@@ -11,6 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mocapstudio.cli.kernel_cache import VARIABLE, place_kernel_cache
+
 COMMAND = Path(sys.executable).with_name("mocapstudio")
 RATE = 30
 
@@ -111,15 +113,22 @@ def figure() -> type[Figure]:
 Run = Callable[..., "subprocess.CompletedProcess[str]"]
 
 
+@pytest.fixture(scope="session")
+def caches(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """What is learnt is kept apart from the user's; compiled kernels are shared with it."""
+    kernels = str(place_kernel_cache())
+    return {"XDG_CACHE_HOME": str(tmp_path_factory.mktemp("cache")), VARIABLE: kernels}
+
+
 @pytest.fixture
-def mocapstudio(tmp_path: Path) -> Run:
+def mocapstudio(tmp_path: Path, caches: dict[str, str]) -> Run:
     """Run the installed command in a folder of the test's own; its output is no terminal."""
 
     def run(*words: object, **environment: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run(
             [str(COMMAND), *map(str, words)],
             cwd=tmp_path,
-            env={**os.environ, **environment},
+            env={**os.environ, **caches, **environment},
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,

@@ -99,7 +99,7 @@ def test_bad_take(mocapstudio, tmp_path: Path, figure, spoil) -> None:
     expected = spoil(lines)
     path = tmp_path / "bad.bvh"
     path.write_text("\n".join(lines) + "\n" if lines else "")
-    done = mocapstudio("detect", path, "--json", "-")
+    done = mocapstudio("detect", "--quick", path, "--json", "-")
     assert done.returncode == 2
     assert json.loads(done.stdout) == {"takes": []}
     line, _ = told(done.stderr, path)
@@ -112,7 +112,8 @@ def test_one_bad_file_among_several(mocapstudio, broken, tmp_path, figure, comma
     bad = tmp_path / "bad.bvh"
     bad.write_text("HIERARCHY\nROOT\n")
     good = figure(seed=1).write(tmp_path / "good.bvh")
-    done = mocapstudio(command, broken, bad, tmp_path / "absent.bvh", good, "--json", "out.json")
+    words = [command, *(["--quick"] if command == "detect" else [])]
+    done = mocapstudio(*words, broken, bad, tmp_path / "absent.bvh", good, "--json", "out.json")
     assert done.returncode == 2
     first, second = sorted(done.stderr.splitlines())
     assert first.startswith(f"error: {tmp_path / 'absent.bvh'}: -: ")

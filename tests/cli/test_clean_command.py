@@ -33,7 +33,7 @@ def test_error_is_repaired_and_nothing_else_changes(
 ) -> None:
     before = digest(broken)
     out = tmp_path / "clean.bvh"
-    done = mocapstudio("clean", broken, "-o", out, "--json", "-")
+    done = mocapstudio("clean", "--quick", broken, "-o", out, "--json", "-")
     assert done.returncode == 0, done.stderr
     [take] = json.loads(done.stdout)["takes"]
     assert set(take) == {"path", "output", "changes"}
@@ -62,7 +62,7 @@ def test_error_is_repaired_and_nothing_else_changes(
 
 def test_provenance_lies_beside(mocapstudio, broken: Path, tmp_path: Path) -> None:
     (tmp_path / "out").mkdir()
-    assert mocapstudio("clean", broken, "-o", tmp_path / "out").returncode == 0
+    assert mocapstudio("clean", "--quick", broken, "-o", tmp_path / "out").returncode == 0
     written = sorted((tmp_path / "out").iterdir())
     assert written[0].name == "broken.bvh"
     [provenance] = written[1:]
@@ -73,7 +73,7 @@ def test_provenance_lies_beside(mocapstudio, broken: Path, tmp_path: Path) -> No
 def test_several_takes_go_into_a_folder(mocapstudio, broken, tmp_path: Path, figure) -> None:
     other = figure(seed=3).write(tmp_path / "other.bvh")
     out = tmp_path / "out" / "deep"
-    done = mocapstudio("clean", broken, other, "-o", out, "--json", "-")
+    done = mocapstudio("clean", "--quick", broken, other, "-o", out, "--json", "-")
     assert done.returncode == 0, done.stderr
     outputs = [take["output"] for take in json.loads(done.stdout)["takes"]]
     assert outputs == [str(out / "broken.bvh"), str(out / "other.bvh")]
@@ -86,7 +86,9 @@ def test_an_input_is_never_overwritten(mocapstudio, broken, tmp_path: Path, figu
     link.symlink_to(broken)
     before = digest(broken), digest(context)
     for target in (broken, link, context, tmp_path):
-        done = mocapstudio("clean", broken, "--context", context, "-o", target, "--json", "-")
+        done = mocapstudio(
+            "clean", "--quick", broken, "--context", context, "-o", target, "--json", "-"
+        )
         assert done.returncode == 2, target
         [line] = done.stderr.splitlines()
         assert "input" in line
@@ -97,7 +99,7 @@ def test_an_input_is_never_overwritten(mocapstudio, broken, tmp_path: Path, figu
 def test_two_takes_of_one_name(mocapstudio, broken: Path, tmp_path: Path, figure) -> None:
     (tmp_path / "second").mkdir()
     second = figure(seed=4).write(tmp_path / "second" / "broken.bvh")
-    done = mocapstudio("clean", broken, second, "-o", tmp_path / "out", "--json", "-")
+    done = mocapstudio("clean", "--quick", broken, second, "-o", tmp_path / "out", "--json", "-")
     assert done.returncode == 2
     assert [take["path"] for take in json.loads(done.stdout)["takes"]] == [str(broken)]
     [line] = done.stderr.splitlines()
@@ -107,7 +109,9 @@ def test_two_takes_of_one_name(mocapstudio, broken: Path, tmp_path: Path, figure
 def test_one_bad_take_among_several(mocapstudio, broken: Path, tmp_path: Path) -> None:
     bad = tmp_path / "bad.bvh"
     bad.write_text("no motion")
-    done = mocapstudio("clean", bad, broken, "-o", tmp_path / "out", "--json", tmp_path / "j")
+    done = mocapstudio(
+        "clean", "--quick", bad, broken, "-o", tmp_path / "out", "--json", tmp_path / "j"
+    )
     assert done.returncode == 2
     [take] = json.loads((tmp_path / "j").read_text())["takes"]
     assert Path(take["output"]).is_file()
@@ -117,7 +121,7 @@ def test_one_bad_take_among_several(mocapstudio, broken: Path, tmp_path: Path) -
 def test_real_take(mocapstudio, data: Path, tmp_path: Path) -> None:
     source = data / "cmu_salsa_pairs_bvh" / "60_10_scaled.bvh"
     out = tmp_path / "clean.bvh"
-    done = mocapstudio("clean", source, "-o", out, "--json", "-")
+    done = mocapstudio("clean", "--quick", source, "-o", out, "--json", "-")
     assert done.returncode == 0, done.stderr
     [take] = json.loads(done.stdout)["takes"]
     spans = [(change["start"], change["end"]) for change in take["changes"]]

@@ -14,7 +14,8 @@ ROOT_ROWS = {"root position", "root heading"}
 
 
 def detected(mocapstudio, *words) -> list[dict]:
-    done = mocapstudio("detect", *words, "--json", "-")
+    """Flags by the quick map, save where a test is about what is learnt."""
+    done = mocapstudio("detect", *words, "--quick", "--json", "-")
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)["takes"]
 
@@ -149,10 +150,33 @@ def test_joint_map_lets_other_names_serve_as_context(mocapstudio, broken, tmp_pa
     alien = figure(seed=1, prefix="actor:").write(tmp_path / "alien.bvh")
     names = tmp_path / "names.json"
     names.write_text(json.dumps({f"actor:{name}": name for name in figure().names}))
-    refused = mocapstudio("detect", broken, "--context", alien, "--json", "-")
+    refused = mocapstudio("detect", broken, "--quick", "--context", alien, "--json", "-")
     assert refused.returncode == 2
     mapped = detected(mocapstudio, broken, "--context", alien, "--joint-map", names)
     assert mapped == detected(mocapstudio, broken, "--context", named)
+
+
+def test_what_is_learnt_from_the_context_is_kept(
+    mocapstudio, caches, tmp_path: Path, figure
+) -> None:
+    one = figure(seconds=8).raise_error("LeftForeArm", 100, 115, 60.0).write(tmp_path / "a.bvh")
+    for seed in (1, 2):
+        (tmp_path / "context").mkdir(exist_ok=True)
+        figure(seconds=8, seed=seed).write(tmp_path / "context" / f"{seed}.bvh")
+
+    def kept() -> set[Path]:
+        return set(Path(caches["XDG_CACHE_HOME"]).rglob("decisions/*.npz"))
+
+    before = kept()
+    words = ("detect", one, "--context", tmp_path / "context", "--json", "-")
+    first = mocapstudio(*words)
+    assert first.returncode == 0, first.stderr
+    [take] = json.loads(first.stdout)["takes"]
+    assert {flag["joint"] for flag in take["flags"]} == {"LeftForeArm"}
+    learnt = kept() - before
+    assert len(learnt) == 1
+    assert mocapstudio(*words).stdout == first.stdout
+    assert kept() - before == learnt
 
 
 def test_fps_overrides_the_file(mocapstudio, broken: Path) -> None:
@@ -161,7 +185,7 @@ def test_fps_overrides_the_file(mocapstudio, broken: Path) -> None:
 
 
 def test_without_json_the_flags_are_told(mocapstudio, broken: Path) -> None:
-    done = mocapstudio("detect", broken)
+    done = mocapstudio("detect", broken, "--quick")
     assert done.returncode == 0
     assert "LeftForeArm" in done.stdout
     assert done.stderr == ""
