@@ -202,10 +202,8 @@ def resampling_matrix(length: int, to: int) -> F32:
 
 def warped_word(corpus: Corpus, start: int, span: int, to: int) -> F32:
     """(to, m, 4) unit quaternions: the matched span of a target word, resampled to `to` frames."""
+    # Signs run on in a texture; to align them anew would break a turn of more than half a circle.
     motion = corpus.planes[:, :, start : start + span]
-    aligned = motion * np.where(
-        np.sum(motion * motion[:, :, :1], axis=1, keepdims=True) < 0, np.float32(-1), np.float32(1)
-    )
-    resampled = np.einsum("nl,mcl->nmc", resampling_matrix(span, to), aligned)
+    resampled = np.einsum("nl,mcl->nmc", resampling_matrix(span, to), motion)
     norm = np.linalg.norm(resampled, axis=-1, keepdims=True)
     return np.asarray(resampled / np.maximum(norm, 1e-12), dtype=np.float32)
