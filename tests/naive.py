@@ -6,6 +6,7 @@ Shapes follow the package: textures are (T, m, 4) quaternions, pose distances (N
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -88,7 +89,7 @@ class WarpingCosts:
         return np.min([cost.min(axis=0) for cost in self.cost.values()], axis=0)
 
     def means(self) -> tuple[np.ndarray, np.ndarray]:
-        """(W,) mean cost a pair of the cheapest path, and (2, W) source and target frames it covers.
+        """(W,) mean cost a pair of the cheapest path; (2, W) source and target frames it covers.
 
         Where several paths are equally cheap, those of the shortest one.
         """
@@ -117,7 +118,7 @@ def minima(
     """
     found = []
     edges = [*breaks, len(values)]
-    for begin, end in zip(edges[:-1], edges[1:], strict=True):
+    for begin, end in pairwise(edges):
         for t in range(begin, end):
             here = values[t]
             if here >= unusable or barred[0] <= t < barred[1]:
@@ -165,8 +166,10 @@ def find_neighbours(
         if own and which == 0:
             centre = word + n // 2 - m // 2
             near = range(centre - n // 2, centre + n // 2 + 1)
-        for t in minima(mean, [0], len(mean), (near.start, near.stop)):
-            found.append((float(mean[t]), which, t, (int(ends[0, t]), int(ends[1, t]))))
+        found += [
+            (float(mean[t]), which, t, (int(ends[0, t]), int(ends[1, t])))
+            for t in minima(mean, [0], len(mean), (near.start, near.stop))
+        ]
     return sorted(found)[:keep]
 
 

@@ -89,7 +89,7 @@ def test_the_same_motion_costs_nothing_along_the_diagonal() -> None:
 
 
 def test_a_pace_beyond_the_slope_limit_is_not_followed() -> None:
-    """At most three frames of one word go with one of the other: a fifth of the pace is too slow."""
+    """At most three frames of one word go with one of the other; a fifth of the pace is less."""
     slow = np.abs(np.subtract.outer(np.arange(5.0), np.arange(25.0) / 5.0)).astype(np.float32)
     mean, ends = run(slow, 25)
     within = np.abs(np.subtract.outer(np.arange(5.0), np.arange(25.0) / 3.0)).astype(np.float32)
