@@ -110,8 +110,9 @@ def test_a_cache_that_cannot_be_written(mocapstudio, tmp_path: Path) -> None:
     assert findings(done.stdout)["Kernel cache"]["state"] == "failed"
 
 
-def test_warm_fills_the_cache(mocapstudio, tmp_path: Path, broken: Path) -> None:
+def test_warm_leaves_nothing_to_compile(mocapstudio, tmp_path: Path, figure) -> None:
     cache = {"NUMBA_CACHE_DIR": str(tmp_path / "kernels")}
+    take = figure(seconds=8).raise_error("LeftForeArm", 100, 115, 60.0).write(tmp_path / "a.bvh")
 
     def compiled() -> set[Path]:
         return set((tmp_path / "kernels").rglob("*.nbc"))
@@ -120,5 +121,6 @@ def test_warm_fills_the_cache(mocapstudio, tmp_path: Path, broken: Path) -> None
     assert mocapstudio("doctor", "--warm", **cache).returncode == 0
     warm = compiled()
     assert warm
-    mocapstudio("clean", "--quick", broken, "-o", tmp_path / "out.bvh", **cache)
+    done = mocapstudio("clean", take, "-o", tmp_path / "out.bvh", "--json", "-", **cache)
+    assert json.loads(done.stdout)["takes"][0]["changes"]
     assert compiled() == warm

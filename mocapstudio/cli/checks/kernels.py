@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Generator
-from typing import TYPE_CHECKING
+from typing import TypeVar
 
 from mocapstudio.cli.checks.finding import Finding, State
 from mocapstudio.cli.kernel_cache import TEMPORARY, VARIABLE, is_writable, place_kernel_cache
 from mocapstudio.motion.progress import Progress
 
-if TYPE_CHECKING:
-    from mocapstudio.cleaning.analysis import Analysis
+Result = TypeVar("Result")
 
 
 def check_kernel_cache() -> list[Finding]:
@@ -43,31 +42,32 @@ def warm() -> Generator[Progress, None, Finding]:
     """
     from dataclasses import replace
 
+    from mocapstudio.cleaning.decision.training import learn
     from mocapstudio.cleaning.detection import detect
-    from mocapstudio.cleaning.parameters import MODES, DetectionParameters
+    from mocapstudio.cleaning.parameters import CALIBRATED, PAPER, DetectionParameters
     from mocapstudio.cleaning.proposals import propose
     from mocapstudio.evaluation.demo import demo_take
 
     began = time.monotonic()
     yield Progress(0.0, "making a take")
     take = replace(demo_take(), trim=(0, 1200))
-    for number, mode in enumerate(MODES):
-        # A threshold low enough that there is something to repair.
-        work = detect(take, (), DetectionParameters(mode=mode, threshold=0.1))
-        analysis = yield from _part(work, number / len(MODES), 1 / len(MODES))
-        if analysis.flags:
-            propose(analysis, analysis.flags[0])
-    return Finding("Kernels", State.OK, f"compiled in {time.monotonic() - began:.0f} s")
+    decision = yield from _part(learn([take], take.skeleton.names), 0.0, 0.6)
+    # A threshold low enough that there is something to repair.
+    low = {mode: DetectionParameters(mode=mode, threshold=0.1) for mode in (PAPER, CALIBRATED)}
+    yield from _part(detect(take, (), low[CALIBRATED], decision=decision), 0.6, 0.8)
+    analysis = yield from _part(detect(take, (), low[PAPER]), 0.8, 1.0)
+    propose(analysis, analysis.flags[0])
+    return Finding("Kernels", State.OK, f"all compiled, after {time.monotonic() - began:.0f} s")
 
 
 def _part(
-    work: Generator[Progress, None, Analysis], start: float, share: float
-) -> Generator[Progress, None, Analysis]:
+    work: Generator[Progress, None, Result], low: float, high: float
+) -> Generator[Progress, None, Result]:
     """Pass the progress of a part of the work on as progress of the whole."""
     while True:
         try:
             progress = next(work)
         except StopIteration as stop:
-            analysis: Analysis = stop.value
-            return analysis
-        yield Progress(start + share * progress.done, progress.what)
+            result: Result = stop.value
+            return result
+        yield Progress(low + (high - low) * progress.done, progress.what)
