@@ -3,7 +3,8 @@
 1. Every take of the context is compared with the others: what residual is usual for a joint;
 2. errors are put into its takes, again and again, half of the time with the nearest takes
 left out, so that novelty is learnt as normal; 3. boosted trees learn to tell them apart, frame by
-frame, each half of the takes for itself; 4. smaller trees judge the spans that these raise on what
+frame, each half of the takes for itself, and nothing near an impossibly fast rotation counts as
+clean; 4. smaller trees judge the spans that these raise on what
 they did not learn from. A take that is alone is judged by trees learnt from every other three
 seconds of it, and what these find in it as it came is taken for unknown, not for normal.
 """
@@ -16,6 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapstudio.cleaning.decision import breaks
 from mocapstudio.cleaning.decision.features import COLUMN, USUAL, Surroundings, windows
 from mocapstudio.cleaning.decision.forest import Forest
 from mocapstudio.cleaning.decision.matching import LEAST_FRAMES, nearest_takes
@@ -88,6 +90,10 @@ class _Example:
     labels: NDArray[np.int8]
     half: NDArray[np.int64]
 
+    def doubting(self, doubtful: NDArray[np.bool_]) -> _Example:
+        """Call nothing clean where it is doubtful, (S, m + 2)."""
+        return replace(self, labels=np.where(doubtful & (self.labels == 0), -1, self.labels))
+
     def only(self, half: int) -> _Example:
         """Take the other half's labels away."""
         return replace(self, labels=np.where((self.half == half)[:, None], self.labels, -1))
@@ -138,7 +144,7 @@ def learn(
     usual = yield from _usual(takes)
     takes = [replace(one, around=replace(one.around, usual=usual)) for one in takes]
     rng = np.random.default_rng(seed)
-    examples = yield from _spoilt_examples(takes, anatomy, rng)
+    examples = _without_breaks((yield from _spoilt_examples(takes, anatomy, rng)), takes)
     yield Progress(0.65, "learning the decision")
     judges = yield from _judges(examples, rng, 0.65)
     alone = len(takes) == 1
@@ -162,22 +168,23 @@ def _judges(
     return first, second
 
 
+def _without_breaks(examples: Sequence[_Example], takes: Sequence[_Known]) -> list[_Example]:
+    """Take what surrounds impossibly fast rotations of the context itself for unknown."""
+    limit = breaks.limits([one.motion for one in takes])
+    doubts = {i: breaks.doubtful(one.motion, one.texture, limit) for i, one in enumerate(takes)}
+    return [one.doubting(doubts[one.take]) for one in examples]
+
+
 def _without_suspects(
     examples: Sequence[_Example], takes: Sequence[_Known], judges: tuple[Judge, Judge]
 ) -> list[_Example]:
-    """Take what looks wrong in the context itself for unknown: nobody said it is clean."""
-    suspects = {}
-    for i, one in enumerate(takes):
-        seen = examine(one.motion, one.around)
-        if seen is not None:
-            p = crossed(judges, seen, halves(len(seen.joints), i, len(takes)))
-            suspects[i] = windows(p, 2).max(axis=-1) > _SUSPECT
-    return [
-        replace(one, labels=np.where(suspects[one.take] & (one.labels == 0), -1, one.labels))
-        if one.take in suspects
-        else one
-        for one in examples
-    ]
+    """Take what looks wrong in the take itself for unknown: nobody said that it is clean."""
+    seen = examine(takes[0].motion, takes[0].around)
+    if seen is None:
+        return list(examples)
+    probability = crossed(judges, seen, halves(len(seen.joints), 0, 1))
+    suspects = windows(probability, 2).max(axis=-1) > _SUSPECT
+    return [one.doubting(suspects) for one in examples]
 
 
 def _each_without_itself(motions: Sequence[BodyMotion], anatomy: Anatomy) -> list[_Known]:
