@@ -37,13 +37,10 @@ def run(
         If there is no display.
     """
     app = make_application()
-    from mocapstudio.gui.journalling import left_behind
     from mocapstudio.gui.main_window import MainWindow
 
     window = MainWindow()
     _catch_faults(window.messages.complain)
-    for journal in left_behind():
-        window.welcome.offer_recovery(journal)
     window.start()
     window.open(list(paths), list(context), list(partners))
     code = app.exec()

@@ -12,7 +12,7 @@ from mocapstudio.gui.messages import Messages
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.review.document import Document
 from mocapstudio.review.journal import Journal, unfinished
-from mocapstudio.review.lock import LockedError
+from mocapstudio.review.lock import LockedError, lock_path
 
 
 class Journalling(QObject):
@@ -100,6 +100,12 @@ def left_behind() -> list[Path]:
         return unfinished()
     except (MocapError, OSError):
         return []
+
+
+def discard(journal: Path) -> None:
+    """Forget what a crash left behind."""
+    for path in (journal, lock_path(journal)):
+        path.unlink(missing_ok=True)
 
 
 _DOING = "The journal cannot be written: what you decide is safe only once it is saved"

@@ -17,7 +17,7 @@ from mocapstudio.gui.dialogs.trouble import TroubleDialog
 from mocapstudio.gui.document import DocumentBridge, UiState, only_frame_differs
 from mocapstudio.gui.files_desk import FilesDesk
 from mocapstudio.gui.jobs import Jobs
-from mocapstudio.gui.journalling import Journalling
+from mocapstudio.gui.journalling import Journalling, left_behind
 from mocapstudio.gui.messages import Messages
 from mocapstudio.gui.playback import Playback
 from mocapstudio.gui.reasons import Reasons
@@ -78,6 +78,8 @@ class MainWindow(QMainWindow):
 
     def start(self) -> None:
         """Show the window, then load what takes longer."""
+        for journal in left_behind():
+            self.welcome.offer_recovery(journal)
         self.show()
         QTimer.singleShot(0, self.workspace.fill)
 

@@ -14,6 +14,7 @@ from mocapstudio import __version__
 from mocapstudio.cleaning.parameters import CALIBRATED, PAPER
 from mocapstudio.gui import settings
 from mocapstudio.gui.dialogs.shortcuts import ShortcutsDialog
+from mocapstudio.gui.journalling import discard
 
 if TYPE_CHECKING:
     from mocapstudio.gui.main_window import MainWindow
@@ -45,6 +46,7 @@ def _wire_files(window: MainWindow) -> None:
     window.welcome.wanted.connect(lambda path: files.open_paths([path]))
     window.welcome.demo_wanted.connect(files.open_demo)
     window.welcome.recovery_wanted.connect(files.recover)
+    window.welcome.discard_wanted.connect(discard)
     window.drops.dropped.connect(files.drop)
     on("analyse", window.analysing.again)
     on("cancel", window.jobs.cancel)

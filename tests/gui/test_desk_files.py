@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -196,6 +198,34 @@ def test_closing_with_unsaved_decisions_asks(hands, generated, tmp_path):
 
     QTest.mouseClick(discard, Qt.MouseButton.LeftButton)
     hands.see(lambda: not hands.window.isVisible())
+
+
+CRASH = """
+import os, sys
+from mocapstudio import formats
+from mocapstudio.cleaning.detection import detect
+from mocapstudio.motion.progress import run
+from mocapstudio.review.document import Document
+from mocapstudio.review.journal import Journal
+
+document = Document()
+journal = Journal(document)
+performer = document.open_take(formats.read(sys.argv[1])[0][0])
+analysis = run(detect(document.source(performer)))
+document.finish_analysis(performer, document.begin_analysis(performer), analysis)
+document.reject([item.flag.id for item in document.state.queue[:2]])
+os._exit(1)
+"""
+
+
+def test_a_crash_costs_nothing(open_desk, qtbot, generated):
+    done = subprocess.run([sys.executable, "-c", CRASH, generated.take], timeout=120)
+    assert done.returncode == 1
+    hands = Hands(open_desk(), qtbot)
+    hands.click("welcome-recover")
+    hands.see(lambda: hands.shows("queue-table") and len(hands.rows()) > 2, 60)
+    assert [row[6] for row in hands.rows()].count("rejected") == 2
+    assert "unsaved" in hands.text("facts")
 
 
 def test_the_demo_take_opens_with_its_context(hands):

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from plot_scene import sitting, walking
 from PySide6.QtCore import Qt
 
+from mocapstudio.cleaning.model import Kind
 from mocapstudio.gui.document import DocumentBridge
 from mocapstudio.gui.queue.model import Column, Filter, QueueFilter, QueueModel
 from mocapstudio.gui.views.queue import QueueView
@@ -106,6 +107,14 @@ def test_no_cell_is_cut_at_any_width(view, width):
         for text in column(view, which):
             assert metrics.horizontalAdvance(text) + icon <= room, (which.name, text, room)
     assert shown.columnWidth(Column.JOINT) >= 60
+
+
+@pytest.mark.parametrize("kind", list(Kind))
+def test_every_kind_has_room(view, kind):
+    view.resize(480, 500)
+    shown = table(view)
+    assert not shown.isColumnHidden(Column.KIND)
+    assert shown.fontMetrics().horizontalAdvance(kind) + 8 <= shown.columnWidth(Column.KIND)
 
 
 @given(

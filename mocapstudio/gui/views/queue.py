@@ -27,7 +27,7 @@ _WIDTHS = {
     Column.TIME: 58,
     Column.FRAME: 46,
     Column.SCORE: 46,
-    Column.KIND: 84,
+    Column.KIND: 92,
     Column.VERDICT: 94,
 }
 _JOINT_WIDTH = 90

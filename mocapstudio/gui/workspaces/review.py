@@ -92,7 +92,7 @@ class ReviewWorkspace(QWidget):
 
     def _share_out(self) -> None:
         width, height = self.width(), self.height()
-        queue = min(max(round(0.32 * width), 340), 470)
+        queue = min(max(round(0.33 * width), 340), 480)
         inspector = min(max(round(0.24 * width), 310), 380)
         self._columns.setSizes([queue, width - queue - inspector, inspector])
         rows = [round(share * height) for share in (0.57, 0.25, 0.18)]

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from datetime import datetime
+from functools import partial
 from pathlib import Path
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import Qt, Signal, SignalInstance
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
 from mocapstudio.gui import icons, settings, theme
 from mocapstudio.gui.actions import Actions
-from mocapstudio.gui.widgets.parts import ElidedLabel, label
+from mocapstudio.gui.widgets.parts import ElidedLabel, label, panel
 
 _RECENT_SHOWN = 6
 
@@ -30,6 +32,9 @@ class Welcome(QWidget):
     recovery_wanted = Signal(object)
     """Emitted with the journal to recover."""
 
+    discard_wanted = Signal(object)
+    """Emitted with the journal to forget."""
+
     def __init__(self, actions: Actions) -> None:
         super().__init__()
         self.setObjectName("welcome")
@@ -37,6 +42,7 @@ class Welcome(QWidget):
         self._recent = QVBoxLayout()
         self._recent.setSpacing(2)
         self._left = QVBoxLayout()
+        self._left.setSpacing(8)
         area = QFrame()
         area.setObjectName("welcome-drop")
         area.setFixedWidth(560)
@@ -57,6 +63,7 @@ class Welcome(QWidget):
         whole = QVBoxLayout(self)
         whole.addStretch(2)
         whole.addLayout(self._left)
+        whole.addSpacing(12)
         whole.addWidget(area, 0, Qt.AlignmentFlag.AlignHCenter)
         whole.addSpacing(18)
         whole.addLayout(self._recent)
@@ -102,13 +109,28 @@ class Welcome(QWidget):
 
     def offer_recovery(self, journal: Path) -> None:
         """Offer what a crash left of a sitting that was never saved."""
-        button = QPushButton(icons.icon("reopen"), "Recover the decisions of an unsaved session")
-        button.setObjectName("welcome-recover")
-        button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        button.setToolTip("The program ended before they were saved")
-        button.clicked.connect(lambda: self.recovery_wanted.emit(journal))
-        self._left.addWidget(button, 0, Qt.AlignmentFlag.AlignHCenter)
-        self._left.addSpacing(12)
+        when = datetime.fromtimestamp(journal.stat().st_mtime).strftime("%d %B %Y, %H:%M")
+        card = panel("welcome-left", "card")
+        card.setFixedWidth(560)
+        row = QHBoxLayout(card)
+        row.addWidget(label(f"A session of {when} was never saved.", wrap=True), 1)
+        specs = (
+            ("welcome-discard", "Discard", "Forget its decisions", self.discard_wanted),
+            ("welcome-recover", "Recover", "Go on where it ended", self.recovery_wanted),
+        )
+        for name, text, tip, signal in specs:
+            button = QPushButton(text)
+            button.setObjectName(name)
+            button.setToolTip(tip)
+            button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+            button.clicked.connect(partial(self._answer, card, signal, journal))
+            row.addWidget(button)
+        self._left.addWidget(card, 0, Qt.AlignmentFlag.AlignHCenter)
+
+    def _answer(self, card: QFrame, signal: SignalInstance, journal: Path, _: bool = False) -> None:
+        card.hide()
+        card.deleteLater()
+        signal.emit(journal)
 
     def _recent_row(self, path: Path) -> QFrame:
         row = _Row(path)
