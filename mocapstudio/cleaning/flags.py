@@ -50,12 +50,16 @@ def score_of(values: NDArray[np.float32], threshold: float) -> float:
 def spans_above(
     values: NDArray[np.float32], threshold: float, bridge: int
 ) -> list[tuple[int, int]]:
-    """Half-open spans where `values` exceed `threshold`, gaps of up to `bridge` frames closed."""
+    """Half-open spans where `values` exceed `threshold`, gaps of up to `bridge` frames closed.
+
+    A gap that holds a 0 stays open: there somebody called the row normal, or protected it.
+    """
     above = np.concatenate([[False], values > threshold, [False]])
     edges = np.flatnonzero(above[1:] != above[:-1])
     spans: list[tuple[int, int]] = []
     for start, end in zip(edges[::2], edges[1::2], strict=True):
-        if spans and start - spans[-1][1] <= bridge:
+        near = bool(spans) and start - spans[-1][1] <= bridge
+        if near and np.all(values[spans[-1][1] : start] > 0.0):
             spans[-1] = (spans[-1][0], int(end))
         else:
             spans.append((int(start), int(end)))
