@@ -49,8 +49,10 @@ def mean_texture(
 
 def departure(source: MotionTexture, mean: F32) -> F32:
     """Geodesic angle between texture and mean texture, (T, m) float32 radians; 0 where no mean."""
-    dot = np.abs(np.sum(source.quaternions * mean, axis=-1))
-    angle = 2.0 * np.arccos(np.clip(dot, 0.0, 1.0))
+    same = np.sum(source.quaternions * mean, axis=-1, keepdims=True) >= 0
+    # By the chord: the arc cosine of a float32 product cannot tell 0.05 degrees from none.
+    chord = np.linalg.norm(source.quaternions - np.where(same, mean, -mean), axis=-1)
+    angle = 4.0 * np.arcsin(np.clip(0.5 * chord, 0.0, 1.0))
     return np.asarray(np.nan_to_num(angle), dtype=np.float32)
 
 
