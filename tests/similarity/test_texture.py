@@ -109,7 +109,7 @@ def test_only_the_trimmed_span_counts() -> None:
 @pytest.mark.parametrize("frames", [1, 2])
 def test_a_take_of_one_moment_is_refused_by_name(frames: int) -> None:
     take = replace(walking(1.0, rate=120), trim=(5, 5 + frames), name="blink")
-    with pytest.raises(MocapError, match="blink: .*too short"):
+    with pytest.raises(MocapError, match=r"blink: .*too short"):
         motion_texture(take, JOINTS)
     with pytest.raises(MocapError, match="too short"):
         texture_of(body_motion(take, JOINTS))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import naive
 import numpy as np
 import pytest
-from made_takes import person, walking
+from made_takes import walking
 from scipy.spatial.transform import Rotation
 
 from mocapstudio.motion import rotations as rot
@@ -100,11 +100,9 @@ def test_a_repeated_motion_is_its_own_neighbour_elsewhere() -> None:
     gap = Rotation.random(20 * len(JOINTS), rng=1).as_quat().reshape(20, len(JOINTS), 4)
     source = bare(rot.continuous(np.concatenate([one, gap, one]).astype(float)))
     found = find_neighbours(source, Corpus.of([source]), 1, 1)
-    again = {0: 56, 5: 61, 56: 0, 61: 5}
-    for word, start in zip(found.words.tolist(), found.found[:, 0], strict=True):
-        if word in again and again[word] + 20 <= len(source):
-            assert start == again[word]
-            assert found.distances[found.words.tolist().index(word), 0] < 1e-5
+    for w, elsewhere in ((0, 56), (1, 61)):
+        assert found.found[w, 0] == elsewhere
+        assert found.distances[w, 0] < 1e-5
 
 
 @pytest.mark.parametrize("frames", [2, 14, 19])
@@ -195,7 +193,3 @@ def test_a_fault_in_a_block_is_raised_when_all_have_ended() -> None:
     with pytest.raises(ArithmeticError, match="first block"):
         for_blocks(500, work)
     assert len(ended) == len(list(blocks(500))) - 1
-
-
-def test_the_person_has_the_joints_used_here() -> None:
-    assert set(JOINTS) <= set(person().names)
