@@ -73,7 +73,8 @@ def detect(
     trim = trim_count(len(joints), whole_body=True)
     neighbours = find_neighbours(texture, corpus, parameters.neighbours, trim, shape)
     yield Progress(0.6, "drawing the map")
-    away = departure(texture, mean_texture(texture, corpus, neighbours, shape))
+    mean = mean_texture(texture, corpus, neighbours, shape)
+    away = departure(texture, mean)
     rates = own_rate.of_motion(motion).placed(take.span[0], take.frames)
     learnt = False
     if parameters.mode == PAPER:
@@ -81,6 +82,7 @@ def detect(
     else:
         height = root.height_departure(texture, corpus, neighbours, shape)
         digression = maps.plain(take, texture, away, height, rates)
+        digression = maps.with_edges(digression, take, motion, texture, mean)
         learnt = decision is not None and decision.joints == joints
     if decision is not None and learnt:
         yield Progress(0.75, "deciding")

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapstudio.cleaning.edges import refined
 from mocapstudio.cleaning.kinds import likely_kind
 from mocapstudio.cleaning.model import DigressionMap, Flag
 from mocapstudio.cleaning.own_rate import OwnRate
@@ -30,7 +31,7 @@ def find_flags(
     flags = []
     for column, row in enumerate(digression.rows):
         values = digression.values[:, column]
-        for start, end in spans_above(values, threshold, bridge):
+        for start, end in _spans(take, digression, column, threshold, bridge):
             peak_frame = start + int(np.argmax(values[start:end]))
             kind = likely_kind(take, digression, own_rate, column, start, end)
             peak = float(values[peak_frame])
@@ -39,6 +40,29 @@ def find_flags(
                 Flag(f"{row}@{start}", row, (row,), start, end, peak, peak_frame, score, kind)
             )
     return tuple(sorted(_joined(take, flags), key=lambda f: (-f.score, f.start, f.joint)))
+
+
+def _spans(
+    take: Take, digression: DigressionMap, column: int, threshold: float, bridge: int
+) -> list[tuple[int, int]]:
+    """Spans of one row, their edges refined at the take's own rate where that was measured."""
+    values = digression.values[:, column]
+    spans = spans_above(values, threshold, bridge)
+    if digression.fine is None or column >= digression.fine.shape[1]:
+        return spans
+    fine, rate = digression.fine[:, column], float(take.rate)
+    # Where the map is 0 nothing is looked at: outside the trim, and where it was ruled out.
+    closed = np.flatnonzero(np.concatenate([[True], values == 0, [True]])) - 1
+    found = []
+    for i, (start, end) in enumerate(spans):
+        low = int(closed[np.searchsorted(closed, start) - 1]) + 1
+        high = int(closed[np.searchsorted(closed, end)])
+        if i > 0:
+            low = max(low, (spans[i - 1][1] + start + 1) // 2)
+        if i + 1 < len(spans):
+            high = min(high, (end + spans[i + 1][0]) // 2)
+        found.append(refined(fine, start, end, rate, (low, high)))
+    return found
 
 
 def score_of(values: NDArray[np.float32], threshold: float) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,6 +62,20 @@ def plain(
     return DigressionMap(joints.rows, values, residuals)
 
 
+def with_edges(
+    digression: DigressionMap, take: Take, motion: BodyMotion, texture: MotionTexture, mean: F32
+) -> DigressionMap:
+    """Add the departure of the take's own frames from the mean texture (T, m, 4)."""
+    between = at_own_rate(take, texture, mean.reshape(len(mean), -1))
+    first, last = take.span
+    expected = between[first:last].reshape(last - first, -1, 4)
+    norm = np.linalg.norm(expected, axis=-1)
+    dot = np.abs(np.sum(expected * motion.rotations, axis=-1)) / np.maximum(norm, 1e-9)
+    fine = np.zeros((take.frames, expected.shape[1]), dtype=np.float32)
+    fine[first:last] = np.nan_to_num(np.rad2deg(2.0 * np.arccos(np.clip(dot, 0.0, 1.0))))
+    return replace(digression, fine=fine)
+
+
 def decided(
     take: Take, motion: BodyMotion, corpus: Corpus, decision: Decision, plainly: DigressionMap
 ) -> DigressionMap:
@@ -71,7 +86,8 @@ def decided(
     probability, degrees = decision.probabilities(motion, around)
     residuals = plainly.residuals.copy()
     residuals[:, : len(decision.joints)] = at_own_rate(take, texture, degrees)
-    return DigressionMap(plainly.rows, at_own_rate(take, texture, probability), residuals)
+    values = at_own_rate(take, texture, probability)
+    return replace(plainly, values=values, residuals=residuals)
 
 
 def without(digression: DigressionMap, excepted: Sequence[Declared]) -> DigressionMap:
@@ -82,7 +98,7 @@ def without(digression: DigressionMap, excepted: Sequence[Declared]) -> Digressi
     for span in excepted:
         if span.row in digression.rows:
             values[span.start : span.end, digression.rows.index(span.row)] = 0.0
-    return DigressionMap(digression.rows, values, digression.residuals)
+    return replace(digression, values=values)
 
 
 def at_own_rate(take: Take, texture: MotionTexture, values: F32) -> F32:

@@ -46,11 +46,15 @@ class DigressionMap:
     residuals
         (F, R) float32: what `values` was made from; degrees for joints and root heading,
         centimetres for root position.
+    fine
+        (F, m) float32 degrees, of the first m rows: departure of the take's own frames from the
+        mean texture, from which edges of flags are read; None where it was not measured.
     """
 
     rows: tuple[str, ...]
     values: NDArray[np.float32]
     residuals: NDArray[np.float32]
+    fine: NDArray[np.float32] | None = None
 
 
 @dataclass(frozen=True)

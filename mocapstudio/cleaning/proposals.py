@@ -143,15 +143,18 @@ def _interpolated(take: Take, joints: Sequence[str], start: int, end: int) -> Ar
     columns = [take.skeleton.index[name] for name in joints]
     q = take.rotations[:, columns]
     n = end - start
-    if start < 2 or end > take.frames - 2:
-        edge = q[end] if start < 2 and end < take.frames else q[max(start - 1, 0)]
+    if start < 1 or end >= take.frames:
+        edge = q[end] if end < take.frames else q[max(start - 1, 0)]
         return np.broadcast_to(edge, (n, *edge.shape)).copy()
     a, b = q[start - 1], q[end]
     reach = n + 1.0
     to_local = rot.conjugate(a)
-    speed_a = rot.to_rotation_vector(rot.multiply(rot.conjugate(q[start - 2]), a)) * reach
     whole = rot.to_rotation_vector(rot.multiply(to_local, b))
-    speed_b = rot.to_rotation_vector(rot.multiply(rot.conjugate(b), q[end + 1])) * reach
+    speed_a = speed_b = whole
+    if start > 1:
+        speed_a = rot.to_rotation_vector(rot.multiply(rot.conjugate(q[start - 2]), a)) * reach
+    if end < take.frames - 1:
+        speed_b = rot.to_rotation_vector(rot.multiply(rot.conjugate(b), q[end + 1])) * reach
     limit = 2.0 * np.linalg.norm(whole, axis=-1, keepdims=True) + 0.1
     speed_a, speed_b = _limited(speed_a, limit), _limited(speed_b, limit)
     t = ((np.arange(n) + 1.0) / reach)[:, None, None]
@@ -173,8 +176,8 @@ def _joined(take: Take, joints: Sequence[str], inside: Array, start: int, end: i
     after = take.rotations[end : end + half, columns]
     joined = join_rotations(
         inside,
-        before[-2:] if len(before) >= 2 else None,
-        after[:2] if len(after) >= 2 else None,
+        before[[-min(len(before), 2), -1]] if len(before) else None,
+        after[[0, min(len(after), 2) - 1]] if len(after) else None,
     )
     return smooth_seams(joined, before, after, min(half, max(2, len(inside) // 2)))
 

@@ -134,7 +134,9 @@ def _neighbour(
     a = texture.frame(first + (start - low) * pace)
     b = texture.frame(first + (end - low) * pace)
     take = analysis.take if which == 0 else analysis.context[which - 1]
+    # What lies beyond the matched path was neither compared nor checked for flags.
+    matched = texture.frame(first + int(ends[1]) - 1) + 1.0
     begin = round(a)
-    finish = min(max(round(b), begin + 1), take.frames)
+    finish = min(max(int(min(round(b), matched)), begin + 1), take.frames)
     degrees = float(np.rad2deg(2.0 * np.sqrt(max(distance, 0.0))))
     return Neighbour(take.name, begin, finish, degrees, which)

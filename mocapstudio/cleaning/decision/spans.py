@@ -15,7 +15,7 @@ from mocapstudio.cleaning.decision.root_features import NAMES as ROOT_NAMES
 F32 = NDArray[np.float32]
 
 CANDIDATE = 0.15
-RARER = 6.0
+RARER = 4.0
 """How many times more errors a minute the examples hold than takes that need cleaning do."""
 _BRIDGE = 2
 _WATCHED = (
