@@ -94,7 +94,7 @@ class Decision:
             if len(self.judges) == 2
             else self.judges[0].probability(seen)
         )
-        probability = judged(first, seen.joints, seen.root, around.limb, self.spans)
+        probability = judged(first, seen.joints, around.limb, self.spans)
         name = "context mean" if len(around.textures) else "own mean"
         return probability, np.nan_to_num(seen.joints[..., COLUMN[name]])
 

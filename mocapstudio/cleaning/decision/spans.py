@@ -10,31 +10,24 @@ from numpy.typing import NDArray
 
 from mocapstudio.cleaning.decision.features import COLUMN
 from mocapstudio.cleaning.decision.forest import Forest
-from mocapstudio.cleaning.decision.root_features import NAMES as ROOT_NAMES
 
 F32 = NDArray[np.float32]
 
 CANDIDATE = 0.15
-RARER = 4.0
-"""How many times more errors a minute the examples hold than takes that need cleaning do."""
+RARER = 2.0
+"""How many times rarer errors are taken to be than in the examples: measured, not counted."""
 _BRIDGE = 2
 _WATCHED = (
     "context mean usual", "given others usual", "given limbs usual", "context mean onset",
     "own mean onset", "context velocity", "own nearest", "pop", "jitter",
-)  # fmt: skip
-_ROOT_WATCHED = (
-    "height context", "height own", "height onset", "heading onset", "turning context",
-    "rise context", "forward context", "place pop", "heading pop", "forward change", "rise change",
-    "clearance context", "clearance onset", "slide context", "slide highest",
 )  # fmt: skip
 _SURROUNDING = ("context distance", "context spread", "own distance", "body others", "speed")
 NAMES = (
     "length", "highest", "mean", "total", "before", "after", "from start", "to end",
     *(f"{name} highest" for name in _WATCHED),
     *(f"{name} mean" for name in _SURROUNDING),
-    *(f"root {name} highest" for name in _ROOT_WATCHED),
     "velocity at start", "velocity at end", "limb highest", "limb rows", "other rows",
-    "share of take", "take usual", "kind of row",
+    "share of take", "take usual",
 )  # fmt: skip
 
 
@@ -48,7 +41,7 @@ class Candidate:
 
 
 def candidates(probability: F32) -> list[Candidate]:
-    """Spans of (S, R) above CANDIDATE, gaps of up to two frames closed."""
+    """Spans of (S, m) above CANDIDATE, gaps of up to two frames closed."""
     found = []
     for row in range(probability.shape[1]):
         above = np.concatenate([[False], probability[:, row] > CANDIDATE, [False]])
@@ -64,16 +57,16 @@ def candidates(probability: F32) -> list[Candidate]:
 
 
 def span_features(
-    probability: F32, joints: F32, root: F32, limb: NDArray[np.int64], spans: Sequence[Candidate]
+    probability: F32, joints: F32, limb: NDArray[np.int64], spans: Sequence[Candidate]
 ) -> F32:
-    """Describe candidate spans.
+    """Describe candidate spans of joints.
 
     Parameters
     ----------
     probability
-        (S, m + 2) of the first decision.
-    joints, root
-        (S, m, .) and (S, 2, .) features.
+        (S, m) of the first decision.
+    joints
+        (S, m, .) features.
     limb
         (m,) which limb each joint belongs to.
     spans
@@ -81,30 +74,26 @@ def span_features(
 
     Returns
     -------
-    (n, len(NAMES)) float32; NaN where only joints, or only root rows, have a feature.
+    (n, len(NAMES)) float32.
     """
     out = np.full((len(spans), len(NAMES)), np.nan, dtype=np.float32)
     above: NDArray[np.bool_] = np.asarray(np.greater(probability, CANDIDATE))
-    frames, m = len(probability), len(limb)
+    frames = len(probability)
     usual = float(np.nanquantile(joints[..., COLUMN["context mean usual"]], 0.9))
     for i, span in enumerate(spans):
         inside = slice(span.start, span.end)
         p = probability[inside, span.row]
         rows = np.any(above[inside], axis=0)
-        mates = (
-            np.flatnonzero((limb == limb[span.row]) & (np.arange(m) != span.row))
-            if (span.row < m)
-            else np.zeros(0, dtype=np.int64)
-        )
+        mates = np.flatnonzero((limb == limb[span.row]) & (np.arange(len(limb)) != span.row))
         values: list[float] = [
             span.end - span.start, p.max(), p.mean(), p.sum(),
             probability[max(span.start - 2, 0), span.row],
             probability[min(span.end + 1, frames - 1), span.row],
             span.start, frames - span.end,
-            *(_of_joint(joints, span) if span.row < m else _of_root(root, inside)),
+            *_of_joint(joints, span),
             probability[inside][:, mates].max() if len(mates) else 0.0,
             rows[mates].sum(), rows.sum() - rows[mates].sum() - 1,
-            above.mean(), usual, max(0, 1 + span.row - m),
+            above.mean(), usual,
         ]  # fmt: skip
         out[i] = values
     return out
@@ -116,37 +105,43 @@ def _of_joint(joints: F32, span: Candidate) -> list[float]:
     return [
         *np.nan_to_num(f[:, [COLUMN[name] for name in _WATCHED]], nan=-1.0).max(axis=0),
         *f[:, [COLUMN[name] for name in _SURROUNDING]].mean(axis=0),
-        *[np.nan] * len(_ROOT_WATCHED),
         velocity[max(span.start - 1, 0) : span.start + 2].max(),
         velocity[max(span.end - 2, 0) : span.end + 1].max(),
     ]
 
 
-def _of_root(root: F32, inside: slice) -> list[float]:
-    columns = [ROOT_NAMES.index(name) for name in _ROOT_WATCHED]
-    highest = np.abs(np.nan_to_num(root[inside, 0][:, columns])).max(axis=0)
-    return [*[np.nan] * (len(_WATCHED) + len(_SURROUNDING)), *highest, np.nan, np.nan]
-
-
-def judged(
-    probability: F32, joints: F32, root: F32, limb: NDArray[np.int64], forest: Forest
-) -> F32:
+def judged(probability: F32, joints: F32, limb: NDArray[np.int64], forest: Forest) -> F32:
     """Let the second decision weigh the first: a span's peak becomes the span's probability.
 
-    Errors are rarer in real takes than in the examples; the odds are corrected for that.
+    Only joints are weighed; of the root's rows the first decision tells enough. Errors are rarer
+    in real takes than in the examples; the odds are corrected for that.
+
+    Parameters
+    ----------
+    probability
+        (S, m + 2) of the first decision.
+    joints, limb
+        As in `span_features`.
+    forest
+        The second decision.
     """
-    spans = candidates(probability)
+    m = len(limb)
+    result = as_rare(probability)
+    spans = candidates(probability[:, :m])
     if not spans:
-        return probability
-    result = probability.copy()
-    raw = forest.probability(span_features(probability, joints, root, limb, spans))
-    verdicts = raw / (raw + RARER * (1.0 - raw))
+        return result
+    verdicts = as_rare(forest.probability(span_features(probability[:, :m], joints, limb, spans)))
     for span, verdict in zip(spans, verdicts, strict=True):
         inside = slice(span.start, span.end)
         p = probability[inside, span.row]
         # The shape stays; half of the peak marks the edges.
         result[inside, span.row] = verdict * np.sqrt(p / p.max())
     return result
+
+
+def as_rare(probability: F32) -> F32:
+    """Correct the odds for how much rarer errors are than in the examples."""
+    return np.asarray(probability / (probability + RARER * (1.0 - probability)))
 
 
 def labels_of(labels: NDArray[np.int8], spans: Sequence[Candidate]) -> NDArray[np.int8]:

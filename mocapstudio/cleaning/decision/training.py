@@ -261,10 +261,10 @@ def _span_examples(
     """Candidate spans that the decision of the other half raises."""
     parts = []
     for one in examples:
-        probability = crossed(judges, one.seen, one.half)
+        probability = crossed(judges, one.seen, one.half)[:, : len(anatomy.limb)]
         found = candidates(probability)
         if found:
-            rows = span_features(probability, one.seen.joints, one.seen.root, anatomy.limb, found)
+            rows = span_features(probability, one.seen.joints, anatomy.limb, found)
             parts.append((rows, labels_of(one.labels, found)))
     if not parts:
         raise TooLittleToLearnError("no error that was put into the context stands out")
