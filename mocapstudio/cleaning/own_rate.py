@@ -107,7 +107,7 @@ def _measure(
     coarse = max(1.0, 60.0 / rate) ** 1.5
     least_pop, least_jitter = least_pop * coarse, least_jitter * coarse
     reach = max(1, round(POP_SECONDS * rate / 2))
-    pops = np.zeros(values.shape[:2], dtype=np.float32)
+    pops = np.zeros(values.shape[:2])
     for step in sorted({1, reach, 2 * reach}):
         if frames <= 2 * step + 1:
             continue
@@ -117,6 +117,9 @@ def _measure(
         pops = np.maximum(pops, away / np.maximum(least_pop, _POP_RATIO * usual))
     fine = departure(values, 1) if frames > 3 else np.zeros(values.shape[:2])
     fine[:1] = fine[-1:] = 0.0
+    # A pop, and what it does to the frames beside it, would count as jitter all over the window.
+    popped = np.maximum(pops, np.maximum(_shifted(pops, -1), _shifted(pops, 1))) >= 1.0
+    fine = np.where(popped, 0.0, fine)
     window = max(3, round(JITTER_SECONDS * rate))
     level = np.sqrt(_moving_mean(fine**2, window))
     calm = np.median(level, axis=0, keepdims=True)

@@ -21,7 +21,7 @@ from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.take import Take
 from mocapstudio.similarity.texture import comparable_joints
 
-_VERSION = 8
+_VERSION = 9
 _MOST_KEPT = 64
 
 
