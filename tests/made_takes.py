@@ -195,3 +195,36 @@ def elsewhere(take: Take, degrees: float, metres: Sequence[float]) -> Take:
     rotations[:, 0] = rot.multiply(turn, rotations[:, 0])
     translations[:, 0] = rot.rotate(turn, translations[:, 0]) + metres
     return take.with_motion(rotations, translations)
+
+
+def below_a_reference(take: Take, turn: np.ndarray) -> Take:
+    """Hang the same motion below a joint that stands at the world's origin, turned by `turn`."""
+    old = take.skeleton
+    skeleton = Skeleton(
+        ("Reference", *old.names),
+        np.concatenate([[-1], old.parents + 1]),
+        np.vstack([np.zeros(3), old.offsets]),
+        old.end_parents + 1,
+        old.end_offsets,
+    )
+    rotations = np.concatenate(
+        [np.broadcast_to(turn, (take.frames, 1, 4)), take.rotations], axis=1
+    ).copy()
+    rotations[:, 1] = rot.multiply(rot.conjugate(turn), take.rotations[:, 0])
+    place = rot.rotate(rot.conjugate(turn), take.translations[:, 0])
+    translations = np.stack([np.zeros_like(place), place], axis=1)
+    return replace(
+        take, skeleton=skeleton, rotations=rotations, translations=translations, translated=(0, 1)
+    )
+
+
+def paced(take: Take, pace: np.ndarray) -> Take:
+    """Play a take at a pace of its own, one value a frame: more than 1 is faster."""
+    at = np.cumsum(pace)
+    at = at[at < take.frames - 1]
+    low = at.astype(int)
+    part = (at - low)[:, None]
+    rotations = rot.slerp(take.rotations[low], take.rotations[low + 1], part)
+    before, after = take.translations[low], take.translations[low + 1]
+    place = before * (1 - part[..., None]) + after * part[..., None]
+    return take.with_motion(rot.continuous(rotations), place)

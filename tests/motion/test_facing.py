@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from made_takes import chain, elsewhere, horse, person, walking
+from made_takes import below_a_reference, chain, elsewhere, horse, person, walking
 from scipy.spatial.transform import Rotation
 
 from mocapstudio.motion import rotations as rot
@@ -36,27 +36,6 @@ def leaning(headings: np.ndarray, skeleton: Skeleton | None = None) -> Take:
     lean *= rng.uniform(0, 0.7, (frames, 1))
     rotations[:, 0] = rot.multiply(rot.about_axis(1, headings), rot.from_rotation_vector(lean))
     return Take("leaning", skeleton, rotations, np.zeros((frames, 1, 3)), Fraction(30))
-
-
-def under_a_reference(take: Take, turn: np.ndarray) -> Take:
-    """The same motion below a joint that stands at the world's origin, turned by `turn`."""
-    old = take.skeleton
-    skeleton = Skeleton(
-        ("Reference", *old.names),
-        np.concatenate([[-1], old.parents + 1]),
-        np.vstack([np.zeros(3), old.offsets]),
-        old.end_parents + 1,
-        old.end_offsets,
-    )
-    rotations = np.concatenate(
-        [np.broadcast_to(turn, (take.frames, 1, 4)), take.rotations], axis=1
-    ).copy()
-    rotations[:, 1] = rot.multiply(rot.conjugate(turn), take.rotations[:, 0])
-    place = rot.rotate(rot.conjugate(turn), take.translations[:, 0])
-    translations = np.stack([np.zeros_like(place), place], axis=1)
-    return replace(
-        take, skeleton=skeleton, rotations=rotations, translations=translations, translated=(0, 1)
-    )
 
 
 def test_heading_is_what_was_turned_about_the_vertical() -> None:
@@ -110,7 +89,7 @@ def test_a_body_frame_needs_a_pair_of_legs() -> None:
 
 
 def test_hips_below_other_joints_move_as_the_kinematics_say() -> None:
-    take = under_a_reference(walking(2.0), rot.from_euler("ZX", np.array([0.5, -1.2])))
+    take = below_a_reference(walking(2.0), rot.from_euler("ZX", np.array([0.5, -1.2])))
     assert topology(take.skeleton).hips == 1
     positions, world = take_pose(take)
     place, rotation = hips_world(take)
@@ -124,7 +103,7 @@ def test_hips_below_other_joints_move_as_the_kinematics_say() -> None:
 
 def test_a_reference_above_the_hips_changes_neither_heading_nor_tilt() -> None:
     take = walking(2.0)
-    below = under_a_reference(take, rot.from_euler("YX", np.array([2.0, -np.pi / 2])))
+    below = below_a_reference(take, rot.from_euler("YX", np.array([2.0, -np.pi / 2])))
     for mine, theirs in zip(split_heading(take), split_heading(below), strict=True):
         np.testing.assert_allclose(mine, theirs, atol=1e-9)
 
@@ -133,7 +112,7 @@ def test_a_reference_above_the_hips_changes_neither_heading_nor_tilt() -> None:
 def test_hips_get_another_tilt_and_keep_their_heading(reference: bool) -> None:
     take = walking(2.0)
     if reference:
-        take = under_a_reference(take, rot.from_euler("YX", np.array([2.0, -1.0])))
+        take = below_a_reference(take, rot.from_euler("YX", np.array([2.0, -1.0])))
     heading, _ = split_heading(take)
     tilt = split_heading(leaning(np.zeros(8)))[1]
     hips = topology(take.skeleton).hips
@@ -147,7 +126,7 @@ def test_hips_get_another_tilt_and_keep_their_heading(reference: bool) -> None:
 def test_the_carrier_is_the_nearest_translated_joint_from_the_hips_up() -> None:
     take = walking(1.0)
     assert carrier(take) == 0
-    below = under_a_reference(take, np.array([0.0, 0.0, 0.0, 1.0]))
+    below = below_a_reference(take, np.array([0.0, 0.0, 0.0, 1.0]))
     assert carrier(below) == 1
     fixed = replace(below, translated=(0,), translations=below.translations[:, :1])
     assert carrier(fixed) == 0
