@@ -23,6 +23,7 @@ from mocapstudio.motion.errors import ParameterError
 from mocapstudio.motion.facing import (
     ROOT_HEADING,
     ROOT_POSITION,
+    ROOT_ROWS,
     carrier,
     hips_rotation,
     split_heading,
@@ -38,7 +39,9 @@ _PAD_SECONDS = 0.04
 _SEAM_SECONDS = 0.06
 
 
-def propose(analysis: Analysis, flag: Flag, choice: int | None = None) -> Proposal:
+def propose(
+    analysis: Analysis, flag: Flag, choice: int | None = None, onto: Take | None = None
+) -> Proposal:
     """Make the replacement motion for one flag.
 
     Parameters
@@ -50,17 +53,22 @@ def propose(analysis: Analysis, flag: Flag, choice: int | None = None) -> Propos
     choice
         Which of `reasons.neighbours` to take as donor, counted from 0; None for the engine's own
         choice.
+    onto
+        The take as it is by now, where repairs of other flags share the joints: the replacement
+        joins these, and keeps the heading or the tilt that they gave the hips.
 
     Raises
     ------
     ParameterError
         If there is no such neighbour.
     """
+    near = () if flag.joint in ROOT_ROWS else neighbours(analysis, flag)
+    if onto is not None:
+        analysis = replace(analysis, take=onto)
     if flag.joint == ROOT_POSITION:
         return _measured(analysis.take, propose_position(analysis, flag))
     if flag.joint == ROOT_HEADING:
         return _measured(analysis.take, propose_heading(analysis, flag))
-    near = neighbours(analysis, flag)
     if choice is not None and not 0 <= choice < len(near):
         raise ParameterError(f"there is no neighbour {choice + 1} for this flag")
     joints = (flag.joint,)

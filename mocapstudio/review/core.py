@@ -72,6 +72,14 @@ class Core:
         """Call `listener(old, new)` at every change; returns what ends that."""
         return self._announcer.subscribe(listener)
 
+    def result(self, performer: str) -> Take:
+        """Return the source with all unmuted edits replayed over it, and the sitting's trim.
+
+        The same object as long as nothing about it changes.
+        """
+        edits = (e for e in self._state.sitting.edits if e.performer == performer)
+        return self._results.of(performer, self._take(performer), edits, self._trim(performer))
+
     @contextmanager
     def group(self, label: str) -> Iterator[None]:
         """Make one undo step of all intents inside; none of them where one raises."""

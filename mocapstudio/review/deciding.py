@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from mocapstudio.cleaning.model import Flag, Proposal
 from mocapstudio.motion.errors import MocapError
+from mocapstudio.motion.take import Take
 from mocapstudio.review import decisions, protection, walk
 from mocapstudio.review.core import Core, new_id
 from mocapstudio.review.model import Edit, Protected, QueueItem, Verdict
@@ -155,19 +156,39 @@ class Deciding(Core):
             if accepted is not None:
                 return None
             proposal = self._propose(performer, flag)
+        if self._shared(performer, flag, proposal):
+            proposal = self._onto_the_others(performer, flag) or proposal
         edit = decisions.edit_of(take, performer, proposal, stamp, new_id(), flag)
         if accepted is not None and decisions.same_samples(edit, self._edit(accepted)):
             return None
         return edit
 
-    def _propose(self, performer: str, flag: Flag) -> Proposal:
+    def _shared(self, performer: str, flag: Flag, proposal: Proposal) -> bool:
+        """Tell whether another flag's repair already changes some of the same samples."""
+        return any(
+            set(edit.joints) & set(proposal.joints)
+            and edit.start < proposal.end
+            and proposal.start < edit.end
+            for edit in self._history.present.edits
+            if edit.performer == performer and edit.flag != flag.id and not edit.muted
+        )
+
+    def _onto_the_others(self, performer: str, flag: Flag) -> Proposal | None:
+        """Make a proposal anew over what is repaired by now; None without a whole analysis."""
+        from mocapstudio.cleaning.analysis import Analysis
+
+        if not isinstance(self._analyses.latest.get(performer), Analysis):
+            return None
+        return self._propose(performer, flag, self.result(performer))
+
+    def _propose(self, performer: str, flag: Flag, onto: Take | None = None) -> Proposal:
         # The engine's kernels take a while to import; a desk that only looks needs none.
         from mocapstudio.cleaning.proposals import propose
 
         analysis = self._analyses.latest.get(performer)
         if analysis is None:
             raise MocapError(f"no proposal for {flag.joint} yet: analyse the take first")
-        return propose(analysis, flag, self._state.choices.get(flag.id))
+        return propose(analysis, flag, self._state.choices.get(flag.id), onto)
 
     def _edit(self, edit_id: str) -> Edit:
         for edit in self._history.present.edits:

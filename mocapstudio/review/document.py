@@ -52,14 +52,6 @@ class Document(Viewing, Deciding):
         """Return the source take with the sitting's trim: what detection works on."""
         return self._sources.of(performer, self._take(performer), (), self._trim(performer))
 
-    def result(self, performer: str) -> Take:
-        """Return the source with all unmuted edits replayed over it, and the sitting's trim.
-
-        The same object as long as nothing about it changes.
-        """
-        edits = (e for e in self._state.sitting.edits if e.performer == performer)
-        return self._results.of(performer, self._take(performer), edits, self._trim(performer))
-
     def declared(self, performer: str) -> tuple[Declared, ...]:
         """Rows × spans that unmuted edits of a performer may change."""
         self._take(performer)
