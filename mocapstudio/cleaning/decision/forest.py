@@ -60,7 +60,7 @@ class Forest:
             float(np.ravel(model._baseline_prediction)[0]),
             roots,
             np.where(leaf, -1, columns[every["feature_idx"]]).astype(np.int32),
-            every["num_threshold"].astype(np.float32),
+            _rounded_down(every["num_threshold"]),
             (every["left"] + shift).astype(np.int32),
             (every["right"] + shift).astype(np.int32),
             every["missing_go_to_left"].astype(np.uint8),
@@ -94,3 +94,9 @@ class Forest:
         """Inverse of `arrays`; KeyError where a part is missing."""
         names = ("roots", "feature", "threshold", "left", "right", "missing_left", "value")
         return Forest(float(arrays[f"{prefix}base"]), *(arrays[f"{prefix}{n}"] for n in names))
+
+
+def _rounded_down(thresholds: NDArray[np.float64]) -> F32:
+    """Largest float32 numbers not above `thresholds`: float32 features are told apart as before."""
+    near = thresholds.astype(np.float32)
+    return np.where(near > thresholds, np.nextafter(near, np.float32(-np.inf)), near)
