@@ -14,6 +14,7 @@ from mocapstudio.cleaning.parameters import PAPER, DetectionParameters
 from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.take import Take
+from mocapstudio.similarity.texture import comparable_joints
 
 Result = TypeVar("Result")
 
@@ -42,7 +43,14 @@ def detect_refined(
     known
         Takes to learn from, where they are others than `context`: several takes of one folder
         share one decision. The take itself where there is no context at all.
+
+    Raises
+    ------
+    SkeletonMismatchError, MocapError
+        As in `detection.detect`.
     """
+    # A context of another skeleton is refused before anything is learnt from it.
+    comparable_joints(take, context)
     decision: Decision | None = None
     if parameters.mode != PAPER:
         try:

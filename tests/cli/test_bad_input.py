@@ -123,12 +123,16 @@ def test_one_bad_file_among_several(mocapstudio, broken, tmp_path, figure, comma
     assert [entry["path"] for entry in entries] == [str(broken), str(good)]
 
 
-def test_context_of_another_skeleton(mocapstudio, broken: Path, tmp_path: Path, figure) -> None:
+def test_context_of_another_skeleton(mocapstudio, broken, tmp_path, figure) -> None:
+    """Refused before anything is learnt from it."""
     other = figure(prefix="someone:").write(tmp_path / "other.bvh")
-    done = mocapstudio("detect", broken, "--context", other, "--json", "-")
+    cache = tmp_path / "cache"
+    words = ("detect", broken, "--context", other, "--json", "-")
+    done = mocapstudio(*words, XDG_CACHE_HOME=str(cache))
     assert done.returncode == 2
     told(done.stderr, other)
     assert json.loads(done.stdout) == {"takes": []}
+    assert not list(cache.rglob("*.npz"))
 
 
 @pytest.mark.parametrize("option", ["--json", "--map"])
