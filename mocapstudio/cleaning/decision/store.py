@@ -5,8 +5,10 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
+import struct
 import tempfile
 import zipfile
+import zlib
 from collections.abc import Generator, Sequence
 from pathlib import Path
 from typing import Any
@@ -23,6 +25,11 @@ from mocapstudio.similarity.texture import comparable_joints
 
 _VERSION = 9
 _MOST_KEPT = 64
+_DAMAGED = (
+    OSError, EOFError, KeyError, ValueError, RuntimeError, MemoryError,
+    struct.error, zipfile.BadZipFile, zlib.error,
+)  # fmt: skip
+"""What reading an npz file raises whose bytes are not those that were written."""
 
 
 def prepare(
@@ -69,7 +76,10 @@ def key(context: Sequence[Take], joints: Sequence[str]) -> str:
 
 
 def _digest(take: Take) -> str:
-    found = hashlib.sha256(repr((take.rate, take.span)).encode())
+    skeleton = take.skeleton
+    told = (take.rate, take.span, take.translated, skeleton.names, skeleton.parents.tolist())
+    found = hashlib.sha256(repr(told).encode())
+    found.update(np.ascontiguousarray(skeleton.offsets, dtype=np.float32).tobytes())
     found.update(np.ascontiguousarray(take.rotations, dtype=np.float32).tobytes())
     found.update(np.ascontiguousarray(take.translations, dtype=np.float32).tobytes())
     return found.hexdigest()
@@ -107,7 +117,7 @@ def load(path: Path) -> Decision | None:
             names = tuple(str(name) for name in arrays["joints"])
             spans = Forest.from_arrays(arrays, "spans ")
             return Decision(names, arrays["usual"], judges, spans)
-    except (OSError, KeyError, ValueError, zipfile.BadZipFile):
+    except _DAMAGED:
         return None
 
 
