@@ -222,7 +222,7 @@ def _spoilt_examples(
     variants = int(np.clip(round(_FRAMES_WANTED / frames), *_VARIANTS))
     examples = []
     for n in range(variants * len(takes)):
-        yield Progress(0.15 + 0.55 * n / (variants * len(takes)), "making examples of errors")
+        yield Progress(0.15 + 0.5 * n / (variants * len(takes)), "making examples of errors")
         one, variant = takes[n % len(takes)], n // len(takes)
         motion, label = spoil(one.motion, anatomy, rng)
         seen = examine(motion, one.around)
