@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from mocapstudio.motion.facing import split_heading
 from mocapstudio.motion.take import Take
-from mocapstudio.similarity.texture import TEXTURE_RATE, MotionTexture
+from mocapstudio.similarity.texture import TEXTURE_RATE, TRAVEL, MotionTexture
 from mocapstudio.similarity.words import Corpus, WordNeighbours, WordShape, resampling_matrix
 
 F32 = NDArray[np.float32]
@@ -25,21 +25,27 @@ def height_departure(
 ) -> F32:
     """Centimetres by which the hips' height departs from the neighbours' mean height, (T,).
 
-    The take's own median departure is taken off: another floor or body height is no error.
+    Another floor or body height is no error: of the departures from the take itself, and of those
+    from its context, their own median is taken off.
     """
-    heights = np.concatenate([one.travel[:, 2] for one in corpus.textures])
-    total, count = np.zeros(len(texture)), np.zeros(len(texture))
+    height = TRAVEL.index("height")
+    heights = np.concatenate([one.travel[:, height] for one in corpus.textures])
+    total, count = np.zeros((2, len(texture))), np.zeros((2, len(texture)))
     for word, found, spans in zip(
         neighbours.words, neighbours.found, neighbours.spans[..., 1], strict=True
     ):
         frames = slice(int(word), int(word) + shape.source)
         for start, span in zip(found[found >= 0], spans[found >= 0], strict=True):
             weights = resampling_matrix(int(span), shape.source)
-            total[frames] += weights @ heights[start : start + span]
-            count[frames] += 1
-    away = np.where(count > 0, texture.travel[:, 2] - total / np.maximum(count, 1), 0.0)
-    away -= np.median(away[count > 0]) if np.any(count > 0) else 0.0
-    return np.asarray(100.0 * np.abs(away), dtype=np.float32)
+            other = int(start >= len(texture))
+            away = texture.travel[frames, height] - weights @ heights[start : start + span]
+            total[other, frames] += away
+            count[other, frames] += 1
+    for away, among in zip(total, count, strict=True):
+        there = among > 0
+        away -= among * (np.median(away[there] / among[there]) if there.any() else 0.0)
+    mean = total.sum(axis=0) / np.maximum(count.sum(axis=0), 1)
+    return np.asarray(100.0 * np.abs(mean), dtype=np.float32)
 
 
 def heading_departure(take: Take) -> F32:
