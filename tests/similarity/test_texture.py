@@ -8,14 +8,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from made_takes import chain, elsewhere, horse, person, walking
+from made_takes import below_a_reference, chain, elsewhere, horse, person, walking
 
 from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.errors import MocapError, SkeletonMismatchError
 from mocapstudio.motion.facing import split_heading
+from mocapstudio.motion.kinematics import take_pose
 from mocapstudio.motion.take import Source, Take
 from mocapstudio.similarity.texture import (
     TEXTURE_RATE,
+    TRAVEL,
     body_motion,
     comparable_joints,
     motion_texture,
@@ -142,3 +144,34 @@ def test_another_skeleton_is_refused_by_file() -> None:
     nobody = replace(stranger, source=None, skeleton=chain(19))
     with pytest.raises(SkeletonMismatchError, match="horse"):
         comparable_joints(take, [nobody])
+
+
+@pytest.mark.parametrize("skeleton", ["person", "below a reference"])
+def test_feet_are_where_the_kinematics_put_them(skeleton: str) -> None:
+    take = walking(2.0)
+    if skeleton != "person":
+        take = below_a_reference(take, rot.from_euler("YX", np.array([0.7, -1.2])))
+    feet = body_motion(take, JOINTS).feet
+    positions, _ = take_pose(take)
+    names = ["LeftLeg", "LeftFoot", "RightLeg", "RightFoot"]
+    assert feet.shape == (take.frames, 4, 3)
+    for name in names:
+        place = positions[:, take.skeleton.index[name]]
+        assert min(np.abs(feet[:, i] - place).max() for i in range(4)) < 1e-9
+
+
+def test_clearance_and_slide_tell_how_a_body_glides() -> None:
+    rotations = np.tile([0.0, 0.0, 0.0, 1.0], (48, len(JOINTS), 1))
+    place = np.stack([0.7 * np.arange(48) / 24, np.full(48, 1.0), np.zeros(48)], axis=-1)
+    gliding = Take("glide", person(), rotations, place[:, None], Fraction(24))
+    travel = motion_texture(gliding, JOINTS).travel
+    np.testing.assert_allclose(travel[:, TRAVEL.index("slide")], 0.7, atol=1e-5)
+    # The lowest joint of the rest pose: 5 cm to the hip joint, 43 to the knee, 43 to the foot.
+    np.testing.assert_allclose(travel[:, TRAVEL.index("clearance")], 1.0 - 0.91, atol=1e-5)
+    standing = gliding.with_motion(translations=np.full((48, 1, 3), 1.0))
+    np.testing.assert_allclose(
+        motion_texture(standing, JOINTS).travel[:, TRAVEL.index("slide")], 0.0, atol=1e-6
+    )
+    # Without legs the hips themselves count.
+    alone = body_motion(standing, ("Hips", "Spine"))
+    assert alone.feet.shape == (48, 1, 3)
