@@ -50,7 +50,7 @@ def convert(
     --out-up say how OUT is laid out.
     """
     from mocapstudio import formats
-    from mocapstudio.cli.joint_map import read_joint_map, rename_joints
+    from mocapstudio.motion.joint_map import read_joint_map, rename_joints
 
     reading = formats.ReadOptions(fps=fps, unit=unit, up=up, lenient=lenient)
     writing = formats.WriteOptions(

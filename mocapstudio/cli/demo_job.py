@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mocapstudio import formats
-from mocapstudio.cli import progress
 from mocapstudio.cli.clean import repaired
+from mocapstudio.cli.detection_options import analyse
 from mocapstudio.evaluation.demo import demo_take, write_demo
 from mocapstudio.evaluation.scoring import Scores, score
 from mocapstudio.evaluation.truth import Truth, analysed_rows, departure, erroneous
@@ -35,8 +35,7 @@ def do_job(folder: Path) -> Iterator[str]:
     FileError
         If something cannot be written.
     """
-    from mocapstudio.cleaning.decision.store import prepare
-    from mocapstudio.cleaning.detection import detect
+    from mocapstudio.cleaning.parameters import DetectionParameters
     from mocapstudio.review.export import export
     from mocapstudio.review.report import write_report
 
@@ -45,10 +44,7 @@ def do_job(folder: Path) -> Iterator[str]:
     take = _read(files.take)
     context = [_read(path) for path in files.context]
     yield f"{files.take}: {take.duration:.0f} s, {len(files.truths)} known errors"
-    # Learnt first, so that the one analysis is the best there is; the desk shows a plain map
-    # meanwhile.
-    decision = progress.run(prepare(context), "context")
-    analysis = progress.run(detect(take, context, decision=decision), take.name)
+    analysis = analyse(take, context, DetectionParameters())
     document, performer = repaired(analysis, files.context)
     cleaned = folder / "demo_clean.bvh"
     export(document, performer, cleaned)

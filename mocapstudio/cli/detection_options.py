@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from mocapstudio.cli import progress
+from mocapstudio.motion.recording import without_itself
 from mocapstudio.motion.take import Take
 
 if TYPE_CHECKING:
@@ -60,7 +61,6 @@ def analyse(
     """Run the detection on a take with a bar on the terminal."""
     from mocapstudio.cleaning.detection import detect
     from mocapstudio.cleaning.refined import detect_refined
-    from mocapstudio.cli.take_files import without_itself
 
     others = without_itself(context, take)
     if quick:

@@ -37,10 +37,10 @@ def inspect(
     What a file leaves open is guessed, and said to be a guess: --fps, --unit and --up decide
     otherwise.
     """
-    from mocapstudio.cli.joint_map import read_joint_map, rename_joints
     from mocapstudio.cli.take_files import Workload
     from mocapstudio.cli.take_options import TakeOptions
     from mocapstudio.formats import ReadOptions, read
+    from mocapstudio.motion.joint_map import read_joint_map, rename_joints
 
     check_writable(json_path)
     work = Workload(TakeOptions(fps, unit, up, joint_map))

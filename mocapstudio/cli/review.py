@@ -7,8 +7,9 @@ from typing import Annotated
 
 import typer
 
-from mocapstudio.cli.take_options import Context
+from mocapstudio.cli.take_options import Context, Fps, JointMap, TakeOptions, Unit, UpAxis
 from mocapstudio.motion.errors import FileError
+from mocapstudio.motion.joint_map import read_joint_map
 
 
 def review(
@@ -25,6 +26,10 @@ def review(
             help="Another performer in the same scene; may be repeated.",
         ),
     ] = None,
+    fps: Fps = None,
+    unit: Unit = None,
+    up: UpAxis = None,
+    joint_map: JointMap = None,
 ) -> None:
     """Open the desk on a session or on takes."""
     for path in (*(paths or ()), *(context or ()), *(partner or ())):
@@ -32,4 +37,6 @@ def review(
             raise FileError(path, "no such file or folder")
     from mocapstudio.gui.application import run
 
-    raise typer.Exit(run(paths or (), context or (), partner or ()))
+    renamed = read_joint_map(joint_map) if joint_map is not None else None
+    options = TakeOptions(fps, unit, up).reading()
+    raise typer.Exit(run(paths or (), context or (), partner or (), options, renamed))

@@ -10,9 +10,9 @@ from pathlib import Path
 
 from mocapstudio import formats
 from mocapstudio.cli.errors import BAD_INPUT, DONE, complain, is_bad_input
-from mocapstudio.cli.joint_map import read_joint_map, rename_joints
 from mocapstudio.cli.take_options import TakeOptions
 from mocapstudio.motion.errors import CancelledError
+from mocapstudio.motion.joint_map import read_joint_map, rename_joints
 from mocapstudio.motion.take import Take
 
 _SHOWN_PROBLEMS = 3
@@ -78,22 +78,6 @@ class Workload:
             return tuple(takes)
         names = read_joint_map(self.options.joint_map)
         return tuple(rename_joints(take, names) for take in takes)
-
-
-def without_itself(context: Sequence[Take], take: Take) -> tuple[Take, ...]:
-    """Leave out of a context the take itself: the same file, or the same content elsewhere."""
-    return tuple(other for other in context if not _same(other, take))
-
-
-def _same(one: Take, other: Take) -> bool:
-    if one.source is None or other.source is None:
-        return one is other
-    if one.source.performer != other.source.performer:
-        return False
-    return (
-        one.source.digest == other.source.digest
-        or one.source.path.resolve() == other.source.path.resolve()
-    )
 
 
 def _warn(report: formats.ImportReport) -> None:

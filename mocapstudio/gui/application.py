@@ -4,21 +4,29 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
+from typing import TYPE_CHECKING
 
 from PySide6.QtWidgets import QApplication
 
 from mocapstudio.gui import icons, settings, theme
 from mocapstudio.motion.errors import MocapError
 
+if TYPE_CHECKING:
+    from mocapstudio.formats import ReadOptions
+
 # Threads that hold the interpreter give it to the desk after this many seconds.
 _SWITCH = 0.002
 
 
 def run(
-    paths: Sequence[Path] = (), context: Sequence[Path] = (), partners: Sequence[Path] = ()
+    paths: Sequence[Path] = (),
+    context: Sequence[Path] = (),
+    partners: Sequence[Path] = (),
+    options: ReadOptions | None = None,
+    renamed: Mapping[str, str] | None = None,
 ) -> int:
     """Open the desk and return the exit code when it is closed.
 
@@ -30,6 +38,10 @@ def run(
         Takes and folders that are searched for neighbours.
     partners
         Takes of other performers in the same scene.
+    options
+        What replaces the files' own rate, unit and up axis.
+    renamed
+        Joints of the context, by name, and what they are called in the take.
 
     Raises
     ------
@@ -38,11 +50,13 @@ def run(
     """
     app = make_application()
     from mocapstudio.gui.main_window import MainWindow
+    from mocapstudio.gui.opening import Manner
 
     window = MainWindow()
     _catch_faults(window.messages.complain)
     window.start()
-    window.open(list(paths), list(context), list(partners))
+    manner = Manner(options, renamed or {})
+    window.open(list(paths), list(context), list(partners), manner)
     code = app.exec()
     sys.excepthook = sys.__excepthook__
     return code

@@ -19,6 +19,7 @@ from mocapstudio.gui.files_desk import FilesDesk
 from mocapstudio.gui.jobs import Jobs
 from mocapstudio.gui.journalling import Journalling, left_behind
 from mocapstudio.gui.messages import Messages
+from mocapstudio.gui.opening import AS_THEY_ARE, Manner
 from mocapstudio.gui.playback import Playback
 from mocapstudio.gui.reasons import Reasons
 from mocapstudio.gui.status_bar import DeskStatusBar
@@ -152,8 +153,15 @@ class MainWindow(QMainWindow):
         dialog.setWindowModality(Qt.WindowModality.WindowModal)
         dialog.open()
 
-    def open(self, paths: list[Path], context: list[Path], partners: list[Path]) -> None:
-        """Open what the command line named."""
+    def open(
+        self,
+        paths: list[Path],
+        context: list[Path],
+        partners: list[Path],
+        manner: Manner = AS_THEY_ARE,
+    ) -> None:
+        """Open what the command line named, read as it asks."""
+        self.files.opening.manner = manner
         if context:
             self.files.opening.set_context(context)
         if paths or partners:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterable, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,6 +16,7 @@ from mocapstudio.gui.jobs import Jobs
 from mocapstudio.gui.messages import Messages
 from mocapstudio.gui.trouble import Trouble, understand
 from mocapstudio.motion.errors import SkeletonMismatchError
+from mocapstudio.motion.joint_map import rename_joints
 from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.recording import same_recording
 from mocapstudio.motion.take import Take
@@ -35,7 +36,28 @@ class Read:
     troubles: list[Trouble] = field(default_factory=list)
 
 
-def reading(paths: Sequence[Path], doing: str) -> Generator[Progress, None, Read]:
+@dataclass(frozen=True)
+class Manner:
+    """How takes are read in this sitting.
+
+    Parameters
+    ----------
+    options
+        What replaces the files' own rate, unit and up axis; None for what they say.
+    renamed
+        Joints of the context, by name, and what they are called in the take.
+    """
+
+    options: formats.ReadOptions | None = None
+    renamed: Mapping[str, str] = field(default_factory=dict)
+
+
+AS_THEY_ARE = Manner()
+
+
+def reading(
+    paths: Sequence[Path], doing: str, manner: Manner = AS_THEY_ARE
+) -> Generator[Progress, None, Read]:
     """Read files and folders; a bad file is noted and the others are read all the same."""
     result = Read()
     files: dict[Path, Path] = {}
@@ -47,7 +69,7 @@ def reading(paths: Sequence[Path], doing: str) -> Generator[Progress, None, Read
     for done, path in enumerate(files.values()):
         yield Progress(done / len(files), f"reading {path.name}")
         try:
-            takes, report = formats.read(path)
+            takes, report = formats.read(path, manner.options)
         except Exception as error:
             result.troubles.append(understand(error, doing))
         else:
@@ -57,10 +79,11 @@ def reading(paths: Sequence[Path], doing: str) -> Generator[Progress, None, Read
 
 
 def reading_context(
-    paths: Sequence[Path], doing: str, take: Take | None
+    paths: Sequence[Path], doing: str, take: Take | None, manner: Manner = AS_THEY_ARE
 ) -> Generator[Progress, None, Read]:
     """Read a context; what has another skeleton than the take under review is left out too."""
-    result = yield from reading(paths, doing)
+    result = yield from reading(paths, doing, manner)
+    result.takes = [rename_joints(one, manner.renamed) for one in result.takes]
     if take is not None:
         from mocapstudio.similarity.texture import comparable_joints
 
@@ -103,6 +126,7 @@ class Opening(QObject):
     ) -> None:
         super().__init__(parent)
         self._bridge, self._jobs, self._messages = bridge, jobs, messages
+        self.manner = AS_THEY_ARE
 
     def open(self, paths: Iterable[Path], partners: Iterable[Path] = ()) -> None:
         """Open takes beside those that are open; the first becomes the one under review."""
@@ -139,7 +163,7 @@ class Opening(QObject):
         doing = "This could not be used as context"
         self._jobs.start(
             "Reading the context",
-            reading_context(wanted, doing, self._bridge.state.take),
+            reading_context(wanted, doing, self._bridge.state.take, self.manner),
             lambda read: self._use_context(read, wanted),
             lambda error: self._messages.complain(error, doing),
             key="context",
@@ -181,7 +205,7 @@ class Opening(QObject):
     ) -> None:
         self._jobs.start(
             title,
-            reading(paths, doing),
+            reading(paths, doing, self.manner),
             done,
             lambda error: self._messages.complain(error, doing),
         )

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from hands import Hands
-from PySide6.QtCore import QSettings
+from PySide6.QtCore import QEvent, QSettings
 
 from mocapstudio import formats
 
@@ -82,6 +82,10 @@ def open_desk(qapp, qtbot, own_settings):
     for window in windows:
         window.close_without_asking()
         window.deleteLater()
+    qapp.processEvents()
+    # Outside an event loop nothing else deletes them, and the next change of theme would still
+    # style what is left of them.
+    qapp.sendPostedEvents(None, QEvent.Type.DeferredDelete)
     qapp.processEvents()
 
 

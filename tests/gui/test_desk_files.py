@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,7 @@ from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import QApplication, QDialogButtonBox
 
 from mocapstudio import formats
+from mocapstudio.gui.opening import Manner
 
 
 def open_take(hands: Hands, path: Path) -> None:
@@ -203,6 +205,7 @@ def test_closing_with_unsaved_decisions_asks(hands, generated, tmp_path):
 CRASH = """
 import os, sys
 from mocapstudio import formats
+from mocapstudio.gui.opening import Manner
 from mocapstudio.cleaning.detection import detect
 from mocapstudio.motion.progress import run
 from mocapstudio.review.document import Document
@@ -243,3 +246,10 @@ def test_a_long_analysis_can_be_cancelled_and_leaves_nothing(hands, generated):
     assert hands.rows() == before
     assert hands.window.jobs.wait(10)
     assert formats.read(generated.take)[0][0].frames == 1200
+
+
+def test_takes_are_read_as_the_command_line_asks(open_desk, qtbot, generated):
+    window = open_desk()
+    window.open([generated.take], [], [], Manner(formats.ReadOptions(fps=Fraction(30))))
+    qtbot.waitUntil(lambda: window.bridge.state.take is not None, timeout=30_000)
+    assert window.bridge.state.take.rate == 30
