@@ -19,12 +19,13 @@ from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.take import Take
 from mocapstudio.similarity.texture import (
+    MotionTexture,
     body_motion,
     comparable_joints,
     motion_texture,
     texture_of,
 )
-from mocapstudio.similarity.words import Corpus, WordShape, find_neighbours, trim_count
+from mocapstudio.similarity.words import Corpus, WordNeighbours, WordShape, searching, trim_count
 
 DEFAULTS = DetectionParameters()
 
@@ -42,19 +43,16 @@ def detect(
 
     Parameters
     ----------
-    take
-        The take; only its trimmed span is looked at.
-    context
-        Other takes of the same skeleton, joints matched by name; the take itself is searched too.
+    take, context
+        The take, of which only the trimmed span is looked at, and other takes of the same
+        skeleton, joints matched by name; the take itself is searched too.
     parameters
         See `DetectionParameters`.
     decision
-        What `decision.store.prepare` learnt from the context; None for the plain map, which
-        needs no preparation. The paper's mode never uses it.
-    normal
-        Rows x spans that somebody called correct: they are never flagged.
-    protected
-        Rows x spans that nothing may change: they are not flagged either.
+        What `decision.store.prepare` learnt from the context; None for the plain map. The
+        paper's mode never uses it.
+    normal, protected
+        Rows x spans that somebody called correct, or that nothing may change: never flagged.
 
     Raises
     ------
@@ -69,9 +67,7 @@ def detect(
     motion = body_motion(take, joints)
     texture = texture_of(motion)
     corpus = Corpus.of([texture, *(motion_texture(one, joints) for one in context)])
-    yield Progress(0.1, "searching neighbours")
-    trim = trim_count(len(joints), whole_body=True)
-    neighbours = find_neighbours(texture, corpus, parameters.neighbours, trim, shape)
+    neighbours = yield from _search(texture, corpus, parameters.neighbours, shape)
     yield Progress(0.6, "drawing the map")
     mean = mean_texture(texture, corpus, neighbours, shape)
     away = departure(texture, mean)
@@ -100,3 +96,17 @@ def detect(
         unanalysed=tuple(name for name in take.skeleton.names if name not in joints),
         learnt=learnt,
     )
+
+
+def _search(
+    texture: MotionTexture, corpus: Corpus, keep: int, shape: WordShape
+) -> Generator[Progress, None, WordNeighbours]:
+    """Find the neighbours of all words of the whole body, with progress from 0.1 to 0.6."""
+    work = searching(texture, corpus, keep, trim_count(len(texture.joints), True), shape)
+    while True:
+        try:
+            done = next(work)
+        except StopIteration as stop:
+            found: WordNeighbours = stop.value
+            return found
+        yield Progress(0.1 + 0.5 * done, "searching neighbours")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -17,6 +17,8 @@ F32 = NDArray[np.float32]
 I64 = NDArray[np.int64]
 
 _FAR = np.float32(1e30)
+# About a quarter of a second of search on two cores.
+_TARGETS_A_STEP, _LEAST_WORDS = 2_000_000, 12
 
 
 @dataclass(frozen=True)
@@ -162,6 +164,33 @@ def find_neighbours(
     # Small blocks keep the pose distances of one block within a few megabytes.
     for_blocks(len(words), search, at_least=12)
     return result
+
+
+def searching(
+    source: MotionTexture, corpus: Corpus, keep: int, trim: int, shape: WordShape = WordShape()
+) -> Generator[float, None, WordNeighbours]:
+    """Do what `find_neighbours` does for all words, yielding the share done a few times a second.
+
+    Parameters
+    ----------
+    source, corpus, keep, trim, shape
+        As in `find_neighbours`.
+    """
+    words = word_starts(len(source), shape)
+    size = int(np.clip(_TARGETS_A_STEP // max(corpus.frames, 1), _LEAST_WORDS, len(words) or 1))
+    parts = []
+    for first in range(0, len(words), size):
+        yield first / len(words)
+        some = words[first : first + size]
+        parts.append(find_neighbours(source, corpus, keep, trim, shape, words=some))
+    if not parts:
+        return find_neighbours(source, corpus, keep, trim, shape, words=words)
+    return WordNeighbours(
+        words,
+        np.concatenate([part.found for part in parts]),
+        np.concatenate([part.spans for part in parts]),
+        np.concatenate([part.distances for part in parts]),
+    )
 
 
 def _straddling(corpus: Corpus, count: int, shape: WordShape) -> NDArray[np.bool_]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import naive
 import numpy as np
 import pytest
@@ -9,6 +11,7 @@ from made_takes import walking
 from scipy.spatial.transform import Rotation
 
 from mocapstudio.motion import rotations as rot
+from mocapstudio.similarity import words
 from mocapstudio.similarity.parallel import blocks, for_blocks
 from mocapstudio.similarity.texture import MotionTexture, motion_texture
 from mocapstudio.similarity.words import (
@@ -79,6 +82,26 @@ def test_neighbours_are_those_of_brute_force(own: bool, group: list[int] | None)
         assert [tuple(span) for span in found.spans[w, there].tolist()] == [
             ends for *_, ends in expected
         ]
+
+
+@pytest.mark.parametrize("frames", [0, 10, 40, 400])
+def test_searching_in_steps_finds_the_same(frames: int, monkeypatch) -> None:
+    monkeypatch.setattr(words, "_TARGETS_A_STEP", 1)  # the least number of words a step
+    source = texture(17.0, 0)
+    source = replace(source, quaternions=source.quaternions[:frames])
+    corpus = Corpus.of([source, texture(3.0, 1)])
+    work, shares = words.searching(source, corpus, 3, 1), list[float]()
+    while True:
+        try:
+            shares.append(next(work))
+        except StopIteration as stop:
+            found = stop.value
+            break
+    whole = find_neighbours(source, corpus, 3, 1)
+    for name in ("words", "found", "spans", "distances"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(whole, name))
+    assert shares == sorted(shares)
+    assert len(shares) == -(-len(whole.words) // 12)
 
 
 def test_no_neighbour_straddles_two_takes_or_lies_near_its_source() -> None:

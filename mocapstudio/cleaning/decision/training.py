@@ -3,10 +3,11 @@
 1. Every take of the context is compared with the others: what residual is usual for a joint;
 2. errors are put into its takes, again and again, half of the time with the nearest takes
 left out, so that novelty is learnt as normal; 3. boosted trees learn to tell them apart, frame by
-frame, each half of the takes for itself, and nothing near an impossibly fast rotation counts as
-clean; 4. smaller trees judge the spans that these raise on what
-they did not learn from. A take that is alone is judged by trees learnt from every other three
-seconds of it, and what these find in it as it came is taken for unknown, not for normal.
+frame, each half of the takes for itself; nothing near an impossibly fast rotation counts as clean;
+4. smaller trees judge the spans that these raise on what they did not learn from.
+
+A take that is alone is judged by trees learnt from every other three seconds of it, and what these
+find in it as it came is taken for unknown, not for normal.
 """
 
 from __future__ import annotations
@@ -161,11 +162,23 @@ def _judges(
     examples: Sequence[_Example], rng: np.random.Generator, done: float
 ) -> Generator[Progress, None, tuple[Judge, Judge]]:
     """Learn from each half alone, so that either can judge the other."""
-    first = _fitted([one.only(0) for one in examples], rng, _HALF)
+    first = _fitted(_half(examples, 0), rng, _HALF)
     yield Progress(done + 0.07, "learning the decision")
-    second = _fitted([one.only(1) for one in examples], rng, _HALF)
+    second = _fitted(_half(examples, 1), rng, _HALF)
     yield Progress(done + 0.14, "learning the decision")
     return first, second
+
+
+def _half(examples: Sequence[_Example], half: int) -> list[_Example]:
+    """One half's labels; of the root rows all, where the half has no error in them to show."""
+    parts = [one.only(half) for one in examples]
+    if any((one.labels[:, -2:] == 1).any() for one in parts):
+        return parts
+    whole = zip(parts, examples, strict=True)
+    return [
+        replace(part, labels=np.hstack([part.labels[:, :-2], one.labels[:, -2:]]))
+        for part, one in whole
+    ]
 
 
 def _without_breaks(examples: Sequence[_Example], takes: Sequence[_Known]) -> list[_Example]:
