@@ -10,13 +10,16 @@ from numpy.typing import NDArray
 
 from mocapstudio.cleaning.edges import refined
 from mocapstudio.cleaning.kinds import likely_kind
-from mocapstudio.cleaning.model import DigressionMap, Flag
+from mocapstudio.cleaning.model import DigressionMap, Flag, Kind
 from mocapstudio.cleaning.own_rate import OwnRate
 from mocapstudio.motion.facing import ROOT_ROWS
 from mocapstudio.motion.take import Take
 from mocapstudio.motion.topology import topology
 
 _BRIDGE_SECONDS = 0.125
+_SWAPPED = 2
+_BENT = 3
+_ALIKE = 0.5
 
 
 def find_flags(
@@ -91,7 +94,8 @@ def spans_above(
 
 
 def _joined(take: Take, flags: list[Flag]) -> Iterable[Flag]:
-    parts, index = topology(take.skeleton), take.skeleton.index
+    """Tell flags of one limb, and of two sides exchanged, of each other."""
+    parts, index, names = topology(take.skeleton), take.skeleton.index, take.skeleton.names
     limbs = {f.joint: parts.limb_of(index[f.joint]).name for f in flags if f.joint in index}
     for flag in flags:
         if flag.joint in ROOT_ROWS:
@@ -102,4 +106,18 @@ def _joined(take: Take, flags: list[Flag]) -> Iterable[Flag]:
             for other in flags
             if limbs.get(other.joint) == limbs[flag.joint] and other.overlaps(flag.start, flag.end)
         }
-        yield replace(flag, joints=tuple(sorted(mates, key=lambda name: index[name])))
+        mirrored = {names[parts.mirror[index[mate]]] for mate in mates} - mates
+        opposite = {o.joint for o in flags if o.joint in mirrored and _alike(o, flag)}
+        kind = flag.kind
+        if min(len(mates), len(opposite)) >= _SWAPPED:
+            kind, mates = Kind.SWAP, mates | opposite
+        elif len(mates) >= _BENT and kind in (Kind.OFFSET, Kind.SPIKE, Kind.DRIFT):
+            kind = Kind.LIMB
+        joints = tuple(sorted(mates, key=lambda name: index[name]))
+        yield replace(flag, joints=joints, kind=kind)
+
+
+def _alike(one: Flag, other: Flag) -> bool:
+    """Tell whether two flags share most of their frames."""
+    shared = min(one.end, other.end) - max(one.start, other.start)
+    return shared > _ALIKE * (max(one.end, other.end) - min(one.start, other.start))

@@ -23,7 +23,7 @@ def likely_kind(
     seconds = (end - start) / rate
     popping = bool(own_rate.pops[start:end, column].max(initial=0.0) >= 1.0)
     if row == ROOT_POSITION:
-        return Kind.ROOT_POP if popping or seconds < 0.3 else Kind.HEIGHT_DRIFT
+        return Kind.ROOT_POP if seconds < 0.3 else Kind.HEIGHT_DRIFT
     if row == ROOT_HEADING:
         return Kind.HEADING_FLIP
     residual = digression.residuals[start:end, column]

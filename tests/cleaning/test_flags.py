@@ -64,3 +64,31 @@ def test_flags_are_read_off_the_map() -> None:
     assert arm.joints == fore.joints == (ROWS[6], ROWS[7])
     assert (root.joint, root.joints, root.kind) == (ROOT_ROWS[0], (ROOT_ROWS[0],), Kind.ROOT_POP)
     assert find_flags(TAKE, DigressionMap(ROWS, values, values), none, 0.96) == ()
+
+
+def _flagged(spans: dict[str, tuple[int, int]]) -> dict[str, tuple[Kind, frozenset[str]]]:
+    values = np.zeros((TAKE.frames, len(ROWS)), dtype=np.float32)
+    for name, (start, end) in spans.items():
+        values[start:end, ROWS.index(name)] = 0.9
+    none = OwnRate(np.zeros_like(values), np.zeros_like(values))
+    flags = find_flags(TAKE, DigressionMap(ROWS, values, 40 * values), none, 0.5)
+    return {flag.joint: (flag.kind, frozenset(flag.joints)) for flag in flags}
+
+
+def test_two_sides_flagged_together_are_a_swap() -> None:
+    legs = ("LeftUpLeg", "LeftLeg", "RightUpLeg", "RightLeg")
+    found = _flagged(dict.fromkeys(legs, (100, 130)))
+    assert found == dict.fromkeys(legs, (Kind.SWAP, frozenset(legs)))
+
+
+def test_sides_flagged_at_other_times_are_none() -> None:
+    left, right = ("LeftUpLeg", "LeftLeg"), ("RightUpLeg", "RightLeg")
+    found = _flagged({**dict.fromkeys(left, (100, 130)), **dict.fromkeys(right, (120, 190))})
+    assert Kind.SWAP not in {kind for kind, _ in found.values()}
+    assert found["LeftLeg"][1] == frozenset(left)
+
+
+def test_three_joints_of_a_limb_are_bent_as_one() -> None:
+    arm = ("LeftShoulder", "LeftArm", "LeftForeArm")
+    found = _flagged(dict.fromkeys(arm, (100, 130)))
+    assert found == dict.fromkeys(arm, (Kind.LIMB, frozenset(arm)))
