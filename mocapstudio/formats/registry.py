@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from mocapstudio.formats.amc_read import looks_like_amc, read_amc
 from mocapstudio.formats.atomic import write_whole
 from mocapstudio.formats.bvh_read import looks_like_bvh, read_bvh
 from mocapstudio.formats.bvh_write import write_bvh
@@ -46,7 +47,10 @@ class Format:
     write: Writer | None = None
 
 
-FORMATS = (Format("bvh", (".bvh",), looks_like_bvh, read_bvh, write_bvh),)
+FORMATS = (
+    Format("bvh", (".bvh",), looks_like_bvh, read_bvh, write_bvh),
+    Format("amc", (".amc",), looks_like_amc, read_amc),
+)
 
 
 def readable_suffixes() -> tuple[str, ...]:
