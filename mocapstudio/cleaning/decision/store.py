@@ -23,7 +23,7 @@ from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.take import Take
 from mocapstudio.similarity.texture import comparable_joints
 
-_VERSION = 9
+_VERSION = 10
 _MOST_KEPT = 64
 _DAMAGED = (
     OSError, EOFError, KeyError, ValueError, RuntimeError, MemoryError,

@@ -47,9 +47,9 @@ from mocapstudio.similarity.texture import (
 
 F32 = NDArray[np.float32]
 
-_FRAMES_WANTED = 11_000
-_VARIANTS = (2, 10)
-_NEGATIVES = 40_000
+_FRAMES_WANTED = 20_000
+_VARIANTS = (2, 16)
+_NEGATIVES = 60_000
 _LEAST_USUAL = np.array([2.0, 2.0, 2.0, 0.1, 0.1], dtype=np.float32)
 _MOST_DROPPED = 10
 _SUSPECT = 0.3
@@ -65,7 +65,7 @@ class _Size:
     least: int
 
 
-_WHOLE, _HALF = _Size(110, 31, 0.12, 40), _Size(70, 31, 0.15, 40)
+_WHOLE, _HALF = _Size(150, 31, 0.1, 40), _Size(80, 31, 0.15, 40)
 _ROOT, _SMALL = _Size(60, 16, 0.12, 40), _Size(80, 8, 0.08, 20)
 
 
