@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from mocapstudio.cli.output import check_writable
+from mocapstudio.formats.registry import written_suffix
 from mocapstudio.motion.errors import FileError
 from mocapstudio.motion.take import Take
 
@@ -40,6 +41,8 @@ class Targets:
     def of(self, path: Path, take: Take, *, alone: bool) -> Path:
         """Return where a take goes; the folder is made.
 
+        In a folder it keeps its ending, but for formats that are only read.
+
         Parameters
         ----------
         path
@@ -58,7 +61,8 @@ class Targets:
                 self.out.mkdir(parents=True, exist_ok=True)
             except OSError as error:
                 raise FileError(self.out, f"cannot be made: {error.strerror}") from error
-            target = self.out / (path.name if alone else f"{take.name}{path.suffix}")
+            suffix = written_suffix(path.suffix)
+            target = self.out / f"{path.stem if alone else take.name}{suffix}"
         elif not alone:
             target = self.out.with_name(f"{self.out.stem}-{take.name}{self.out.suffix}")
         self._refuse_input(target)

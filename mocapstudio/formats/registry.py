@@ -58,6 +58,12 @@ def readable_suffixes() -> tuple[str, ...]:
     return tuple(suffix for one in FORMATS for suffix in one.suffixes)
 
 
+def written_suffix(suffix: str) -> str:
+    """Return the suffix itself where takes can be written as it tells, else ``.bvh``."""
+    written = [known for one in FORMATS if one.write is not None for known in one.suffixes]
+    return suffix if suffix.lower() in written else ".bvh"
+
+
 def read(path: Path | str, options: ReadOptions | None = None) -> tuple[list[Take], ImportReport]:
     """Read a motion file: one take a performer, and what was odd about the file.
 
