@@ -33,7 +33,7 @@ _TABLE = re.compile(r"^\| (\S+\.bvh) \| (\d+) \| ([\d.]+) \| (\d+) joints \|$", 
 def takes(data: Path) -> dict[Path, tuple[Take, formats.ImportReport]]:
     """Every take of the data folder, read once."""
     found = {}
-    for path in formats.find_takes([data]):
+    for path in sorted(data.rglob("*.bvh")):
         (take,), report = formats.read(path)
         found[path] = take, report
     return found
