@@ -85,17 +85,10 @@ def detect(
         digression = maps.decided(take, motion, corpus, decision, digression)
     digression = maps.without(digression, [*normal, *protected])
     yield Progress(0.95, "raising flags")
-    return Analysis(
-        take=take,
-        context=tuple(context),
-        parameters=parameters,
-        corpus=corpus,
-        map=digression,
-        flags=find_flags(take, digression, rates, parameters.threshold),
-        own_rate=rates,
-        unanalysed=tuple(name for name in take.skeleton.names if name not in joints),
-        learnt=learnt,
-    )
+    flags = find_flags(take, digression, rates, parameters.threshold)
+    left_out = tuple(name for name in take.skeleton.names if name not in joints)
+    others = tuple(context)
+    return Analysis(take, others, parameters, corpus, digression, flags, rates, left_out, learnt)
 
 
 def _search(

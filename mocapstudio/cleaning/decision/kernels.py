@@ -147,11 +147,9 @@ def match_windows(
     own
         (3,) half-open span of the corpus that is the source itself, and how many frames from the
         source's own place a window of it must keep.
-    found, distance
-        (C, L, K), overwritten: frames of the rest of the corpus, and their distance a joint and
-        frame, without limb l.
-    own_found, own_distance
-        (C, L, K2), the same for the source itself.
+    found, distance, own_found, own_distance
+        (C, L, K), overwritten: frames of the rest of the corpus, and of the source itself, and
+        their distance a joint and frame, without limb l.
     """
     frames, joints, length = planes.shape[2], planes.shape[0], 2 * HALF + 1
     ring = np.zeros((length + 1, limbs, frames), np.float32)
@@ -232,10 +230,8 @@ def residuals(
 
     Parameters
     ----------
-    source, planes, limb, centres, found, distance
-        As in `match_windows`.
-    centre_of
-        (S,) which centre each source frame belongs to.
+    source, planes, limb, centre_of, centres, found, distance
+        As in `match_windows`; `centre_of` (S,) tells which centre each source frame goes by.
     out
         (S, m, RESIDUALS), overwritten, degrees: 0 smallest and 1 median angle to a neighbour, 2
         angle to their mean, 3 mean angle of the neighbours to their mean, 4 and 5 distance of the
