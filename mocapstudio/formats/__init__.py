@@ -2,7 +2,7 @@
 
 from mocapstudio.formats.find import find_takes
 from mocapstudio.formats.options import ReadOptions, WriteOptions
-from mocapstudio.formats.registry import read, readable_suffixes, write
+from mocapstudio.formats.registry import Recording, read, read_any, readable_suffixes, write
 from mocapstudio.formats.report import ImportReport, Problem
 from mocapstudio.motion.declared import Declared
 
@@ -11,9 +11,11 @@ __all__ = [
     "ImportReport",
     "Problem",
     "ReadOptions",
+    "Recording",
     "WriteOptions",
     "find_takes",
     "read",
+    "read_any",
     "readable_suffixes",
     "write",
 ]

@@ -14,10 +14,13 @@ from mocapstudio.formats.options import ReadOptions, WriteOptions
 from mocapstudio.formats.report import ImportReport
 from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.errors import FileError
+from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.motion.take import Take
 
-Reader = Callable[[Path, bytes, ReadOptions], tuple[list[Take], ImportReport]]
+Recording = Take | MarkerTake
+Reader = Callable[[Path, bytes, ReadOptions], tuple[Sequence[Recording], ImportReport]]
 Writer = Callable[[Take, Sequence[Declared], WriteOptions], Iterator[bytes]]
+MarkerWriter = Callable[[MarkerTake, Sequence[Declared], WriteOptions], Iterator[bytes]]
 
 _SNIFFED = 4096
 
@@ -37,7 +40,9 @@ class Format:
     read
         From a file's bytes to takes.
     write
-        From a take to a file's bytes, or None where the format is only read.
+        From a take to a file's bytes, or None where the format does not hold joints.
+    write_markers
+        From a marker take to a file's bytes, or None where the format does not hold markers.
     """
 
     name: str
@@ -45,6 +50,7 @@ class Format:
     looks_like: Callable[[bytes], bool]
     read: Reader
     write: Writer | None = None
+    write_markers: MarkerWriter | None = None
 
 
 FORMATS = (
@@ -64,8 +70,10 @@ def written_suffix(suffix: str) -> str:
     return suffix if suffix.lower() in written else ".bvh"
 
 
-def read(path: Path | str, options: ReadOptions | None = None) -> tuple[list[Take], ImportReport]:
-    """Read a motion file: one take a performer, and what was odd about the file.
+def read_any(
+    path: Path | str, options: ReadOptions | None = None
+) -> tuple[list[Recording], ImportReport]:
+    """Read a motion file of joints or markers: one take a performer, and what was odd about it.
 
     The format is told by the suffix, or by the content where the suffix tells nothing.
 
@@ -80,11 +88,27 @@ def read(path: Path | str, options: ReadOptions | None = None) -> tuple[list[Tak
     except (OSError, ValueError) as bad:
         # A ValueError is a null byte in the name.
         raise FileError(path, (getattr(bad, "strerror", None) or str(bad)).lower()) from bad
-    return _format_of(path, data[:_SNIFFED]).read(path, data, options or ReadOptions())
+    found, report = _format_of(path, data[:_SNIFFED]).read(path, data, options or ReadOptions())
+    return list(found), report
+
+
+def read(path: Path | str, options: ReadOptions | None = None) -> tuple[list[Take], ImportReport]:
+    """Read a motion file whose takes have a skeleton.
+
+    Raises
+    ------
+    FileError
+        As `read_any`, and if the file holds markers only.
+    """
+    found, report = read_any(path, options)
+    takes = [take for take in found if isinstance(take, Take)]
+    if not takes:
+        raise FileError(Path(path), "holds markers and no skeleton; solve it to a skeleton first")
+    return takes, report
 
 
 def write(
-    take: Take,
+    take: Recording,
     path: Path | str,
     *,
     declared: Sequence[Declared] = (),
@@ -117,14 +141,29 @@ def write(
         If a sample changed without being declared, or the format cannot hold it.
     """
     path = Path(path)
+    own = [take.source.path] if take.source is not None else []
+    pieces = _pieces(take, path, declared, options or WriteOptions())
+    write_whole(path, pieces, inputs=[*own, *inputs])
+
+
+def _pieces(
+    take: Recording, path: Path, declared: Sequence[Declared], options: WriteOptions
+) -> Iterator[bytes]:
+    suffix = path.suffix.lower()
     for one in FORMATS:
-        if one.write is not None and path.suffix.lower() in one.suffixes:
-            own = [take.source.path] if take.source is not None else []
-            pieces = one.write(take, declared, options or WriteOptions())
-            write_whole(path, pieces, inputs=[*own, *inputs])
-            return
-    known = ", ".join(s for one in FORMATS if one.write is not None for s in one.suffixes)
-    raise FileError(path, f"cannot write {path.suffix or 'without suffix'!r}; known are {known}")
+        if suffix not in one.suffixes:
+            continue
+        if isinstance(take, Take) and one.write is not None:
+            return one.write(take, declared, options)
+        if isinstance(take, MarkerTake) and one.write_markers is not None:
+            return one.write_markers(take, declared, options)
+    joints = isinstance(take, Take)
+    able = [one for one in FORMATS if (one.write if joints else one.write_markers) is not None]
+    known = ", ".join(s for one in able for s in one.suffixes) or "none yet"
+    what = "joints" if joints else "markers"
+    raise FileError(
+        path, f"cannot write {what} as {path.suffix or 'without suffix'!r}; known are {known}"
+    )
 
 
 def _format_of(path: Path, head: bytes) -> Format:
