@@ -87,4 +87,7 @@ def _rate_problem(line: int | None, what: str, rate: Fraction) -> Problem:
 
 def frame_time(rate: Fraction) -> str:
     """Seconds a frame lasts, with the digits from which `stated_rate` tells the rate again."""
-    return f"{float(1 / rate):.12f}".rstrip("0").ljust(8, "0")
+    whole = f"{float(1 / rate):.12f}"
+    short = whole.rstrip("0").ljust(8, "0")
+    # Few digits may stand for a usual or whole rate as well.
+    return short if rate_from_frame_time(short) == rate else whole

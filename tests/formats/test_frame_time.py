@@ -3,7 +3,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from mocapstudio.formats.frame_time import frame_time, rate_from_frame_time, stated_rate
@@ -69,6 +69,7 @@ def test_the_rate_is_that_of_the_text(written: str) -> None:
 
 
 @given(st.fractions(Fraction(1, 2), 1000, max_denominator=1001))
+@example(Fraction(12500, 13))
 def test_what_is_written_is_told_again(rate: Fraction) -> None:
     told, problem = stated_rate(frame_time(rate))
     assert abs(told / rate - 1) < Fraction(1, 1_000_000)
