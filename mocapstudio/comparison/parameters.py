@@ -1,0 +1,63 @@
+"""What a comparison of two performances depends on: engine, form and command line read it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mocapstudio.motion.errors import ParameterError
+
+BOX = "box"
+ROOT = "root"
+ROTATIONS = "rotations"
+FEATURES = (BOX, ROOT, ROTATIONS)
+
+ENDS = ("closed", "reference", "source")
+
+
+@dataclass(frozen=True)
+class ComparisonParameters:
+    """How two performances are compared; defaults are those of paper 4.
+
+    Parameters
+    ----------
+    features
+        What a pose is: ``"box"``: positions in the frame of neck and head, scaled into the unit
+        box (the paper's); ``"root"``: positions in the frame of hips and heading, scaled likewise;
+        ``"rotations"``: rotations of the joints.
+    true_speed
+        Compare at true speed instead of stretched to equal lengths.
+    rate
+        Frames a second at least, at which poses are aligned.
+    tolerance
+        Seconds gained or lost within `window` that still count as on time.
+    window
+        Seconds over which gain and loss are looked at.
+    begin, end
+        ``"closed"``, or the side of which frames may be skipped at that end.
+    rounded
+        Round F to whole frames, as the paper does.
+
+    Raises
+    ------
+    ParameterError
+        If a value is not one of those, or outside its bounds.
+    """
+
+    features: str = BOX
+    true_speed: bool = False
+    rate: float = 25.0
+    tolerance: float = 0.1
+    window: float = 0.5
+    begin: str = "closed"
+    end: str = "closed"
+    rounded: bool = False
+
+    def __post_init__(self) -> None:
+        if self.features not in FEATURES:
+            raise ParameterError(f"features must be one of {', '.join(FEATURES)}")
+        for name in ("begin", "end"):
+            if getattr(self, name) not in ENDS:
+                raise ParameterError(f"{name} must be one of {', '.join(ENDS)}")
+        for name, low, high in (("rate", 5, 240), ("tolerance", 0, 10), ("window", 0.02, 10)):
+            if not low <= getattr(self, name) <= high:
+                raise ParameterError(f"{name} must lie in {low}..{high}")
