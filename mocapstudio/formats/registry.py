@@ -10,6 +10,8 @@ from mocapstudio.formats.amc_read import looks_like_amc, read_amc
 from mocapstudio.formats.atomic import write_whole
 from mocapstudio.formats.bvh_read import looks_like_bvh, read_bvh
 from mocapstudio.formats.bvh_write import write_bvh
+from mocapstudio.formats.c3d_layout import looks_like_c3d
+from mocapstudio.formats.c3d_read import read_c3d
 from mocapstudio.formats.options import ReadOptions, WriteOptions
 from mocapstudio.formats.report import ImportReport
 from mocapstudio.motion.declared import Declared
@@ -56,6 +58,7 @@ class Format:
 FORMATS = (
     Format("bvh", (".bvh",), looks_like_bvh, read_bvh, write_bvh),
     Format("amc", (".amc",), looks_like_amc, read_amc),
+    Format("c3d", (".c3d",), looks_like_c3d, read_c3d),
 )
 
 
