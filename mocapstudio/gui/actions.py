@@ -9,10 +9,10 @@ from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QMenu, QMenuBar, QPushButton, QToolButton, QWidget
 
 from mocapstudio.gui import icons
-from mocapstudio.gui.commands import COMMANDS, MENUS, SEPARATOR, Command
+from mocapstudio.gui.allowed import GENERAL, allowed, checked
+from mocapstudio.gui.commands import COMMANDS, HOMES, MENUS, SEPARATOR, Command
 from mocapstudio.gui.document import UiState
-from mocapstudio.motion.facing import ROOT_ROWS
-from mocapstudio.review.model import Verdict
+from mocapstudio.gui.workspaces.workspace import Answers
 from mocapstudio.review.state import DocumentState
 
 
@@ -28,6 +28,10 @@ class Actions(QObject):
 
     def __init__(self, window: QWidget) -> None:
         super().__init__(window)
+        self._slots: dict[str, Callable[[], object]] = {}
+        self._menus: dict[str, QMenu] = {}
+        self._state, self._ui = DocumentState(), UiState()
+        self._workspace, self._answers = "review", Answers()
         self._actions = {name: self._make(one, window) for name, one in COMMANDS.items()}
         window.addActions(list(self._actions.values()))
         self.recolour()
@@ -36,8 +40,8 @@ class Actions(QObject):
         return self._actions[name]
 
     def on(self, name: str, slot: Callable[[], object]) -> None:
-        """Call `slot` when the user asks for a command."""
-        self._actions[name].triggered.connect(lambda _=False: slot())
+        """Call `slot` when the user asks for a command, unless the workspace answers it."""
+        self._slots[name] = slot
 
     def fill(self, bar: QMenuBar) -> dict[str, QMenu]:
         """Build the menus; returns them by their title without the mnemonic."""
@@ -47,12 +51,13 @@ class Actions(QObject):
             menu.setToolTipsVisible(True)
             plain = title.replace("&", "")
             menu.setObjectName(f"menu-{plain.lower()}")
-            menus[plain] = menu
+            menus[plain] = self._menus[title] = menu
             for command in commands:
                 if command is SEPARATOR:
                     menu.addSeparator()
                 else:
                     menu.addAction(self._actions[command.name])
+        self._apply()
         return menus
 
     def tool_button(self, name: str, *, text: str = "") -> QToolButton:
@@ -93,50 +98,55 @@ class Actions(QObject):
 
     def follow_state(self, state: DocumentState) -> None:
         """Switch commands on and off by what the document allows."""
-        take = state.take is not None
-        item = state.selected
-        span = state.selection.span is not None
-        decided = item is not None and item.verdict is not Verdict.OPEN
-        accepted = item is not None and item.verdict is Verdict.ACCEPTED
-        allowed = {
-            "partner": take, "export": take, "report": take, "close-take": take,
-            "save": take, "save-as": take,
-            "analyse": take, "play": take, "frame-back": take, "frame-on": take,
-            "ten-back": take, "ten-on": take, "first": take, "last": take, "loop": take,
-            "trim-in": take, "trim-out": take,
-            "trim-clear": take and any(one == state.active for one, _ in state.sitting.trims),
-            "next": bool(state.queue), "previous": bool(state.queue),
-            "select-all": bool(state.queue),
-            "deselect": bool(state.selection.joints) or span or item is not None,
-            "accept": item is not None, "reject": item is not None, "defer": item is not None,
-            "reopen": decided, "reject-like": item is not None, "edit": accepted,
-            "protect": take and span,
-            "unprotect": any(one.performer == state.active for one in state.sitting.protected),
-            "frame-joint": take, "zoom-flag": item is not None or span, "whole-take": take,
-            "new": take,
-            "undo": state.can_undo is not None, "redo": state.can_redo is not None,
-        }  # fmt: skip
-        for k in range(6):
-            allowed[f"neighbour-{k}"] = item is not None and item.flag.joint not in ROOT_ROWS
-        for name, enabled in allowed.items():
-            self._actions[name].setEnabled(enabled)
-        self._label("undo", state.can_undo)
-        self._label("redo", state.can_redo)
-        self._actions["calibrated"].setChecked(state.mode == "calibrated")
-        self._actions["paper"].setChecked(state.mode == "paper")
+        self._state = state
+        self._apply()
 
     def follow_ui(self, ui: UiState) -> None:
         """Show which switches are on."""
-        self._actions["play"].setText("&Stop" if ui.playing else "&Play")
-        self._actions["play"].setIcon(icons.icon("pause" if ui.playing else "play"))
-        for name, on in {
-            "loop": ui.loop,
-            "ghosts": ui.ghosts,
-            "follow": ui.follow,
-            "trails": ui.trails,
-            "theme": ui.theme == "light",
-            "learning": ui.learning,
-        }.items():
+        self._ui = ui
+        self._show_switches()
+
+    def follow_workspace(self, name: str, answers: Answers) -> None:
+        """Let the workspace in front answer what it answers itself."""
+        self._workspace, self._answers = name, answers
+        self._apply()
+
+    def _call(self, name: str) -> None:
+        slot = self._answers.slots.get(name) or self._slots.get(name)
+        if slot is not None:
+            slot()
+        if self._actions[name].isCheckable():
+            # A click checks the button, whatever became of what it asked for.
+            self._show_switches()
+
+    def _apply(self) -> None:
+        by_document, own = allowed(self._state), self._answers
+        away = set()
+        for title, menu in self._menus.items():
+            here = self._workspace in HOMES.get(title, (self._workspace,))
+            menu.menuAction().setVisible(here)
+            if not here:
+                away |= {one.name for one in MENUS[title]}
+        for name, action in self._actions.items():
+            able = by_document.get(name, True)
+            if name in own.slots:
+                able = own.allowed.get(name, True)
+            elif own.alone and name not in GENERAL and not name.startswith("workspace-"):
+                able = False
+            action.setEnabled(able and (name not in away or name in GENERAL))
+        self._label("undo", own.undo if "undo" in own.slots else self._state.can_undo)
+        self._label("redo", own.redo if "redo" in own.slots else self._state.can_redo)
+        self._show_switches()
+
+    def _show_switches(self) -> None:
+        own = self._answers
+        playing = self._ui.playing if own.playing is None else own.playing
+        self._actions["play"].setText("&Stop" if playing else "&Play")
+        self._actions["play"].setIcon(icons.icon("pause" if playing else "play"))
+        here = {f"workspace-{self._workspace}": True}
+        others = {n: False for n in COMMANDS if n.startswith("workspace-")}
+        switches = others | here | checked(self._state, self._ui) | dict(own.checked)
+        for name, on in switches.items():
             self._actions[name].setChecked(on)
 
     def _label(self, name: str, step: str | None) -> None:
@@ -151,6 +161,7 @@ class Actions(QObject):
         action.setShortcutContext(Qt.ShortcutContext.WindowShortcut)
         action.setAutoRepeat(command.name in _REPEATING)
         action.setCheckable(command.checkable)
+        action.triggered.connect(lambda _=False: self._call(command.name))
         self._set_tip(action, command.tip)
         return action
 

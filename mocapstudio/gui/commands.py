@@ -2,38 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from mocapstudio.gui.command import SEPARATOR, Command
+from mocapstudio.gui.workspaces.registry import WORKSPACES
 
-
-@dataclass(frozen=True)
-class Command:
-    """One thing the user can do.
-
-    Parameters
-    ----------
-    name
-        How the code calls it; the QAction's object name is ``action-<name>``.
-    text
-        As the menu shows it.
-    tip
-        What it does, for the tooltip and the status bar.
-    keys
-        Shortcuts, the first one shown.
-    icon
-        Name of an icon, or "".
-    checkable
-        Whether it switches something on and off.
-    """
-
-    name: str
-    text: str
-    tip: str
-    keys: tuple[str, ...] = ()
-    icon: str = ""
-    checkable: bool = False
-
-
-SEPARATOR = Command("", "", "")
+__all__ = ["COMMANDS", "HOMES", "MENUS", "SEPARATOR", "Command"]
 
 FILE = (
     Command("open", "&Open…", "Open takes or a session", ("Ctrl+O",), "open"),
@@ -151,15 +123,20 @@ VIEW = (
             "search"),
     Command("whole-take", "&Whole Take", "Show the whole take on map and curves", ("Shift+Z",)),
     SEPARATOR,
-    Command("view-queue", "&Queue", "Show the queue", ("Ctrl+1",), checkable=True),
-    Command("view-inspector", "&Inspector", "Show the inspector", ("Ctrl+2",), checkable=True),
-    Command("view-map", "Digression &Map", "Show the digression map", ("Ctrl+3",), checkable=True),
-    Command("view-curves", "&Curves", "Show the curves", ("Ctrl+4",), checkable=True),
+    Command("view-queue", "&Queue", "Show the queue", ("F6",), checkable=True),
+    Command("view-inspector", "&Inspector", "Show the inspector", ("F7",), checkable=True),
+    Command("view-map", "Digression &Map", "Show the digression map", ("F8",), checkable=True),
+    Command("view-curves", "&Curves", "Show the curves", ("F9",), checkable=True),
     Command("reset-layout", "&Reset Layout", "Put all parts back where they came from"),
     SEPARATOR,
     Command("theme", "&Light Theme", "Switch between dark and light", (), "theme", checkable=True),
     Command("full-screen", "F&ull Screen", "Fill the screen", ("F11",), checkable=True),
 )  # fmt: skip
+
+WORKSPACE = tuple(
+    Command(f"workspace-{one.name}", one.text, one.tip, (one.key,), one.icon, checkable=True)
+    for one in WORKSPACES
+)
 
 HELP = (
     Command("shortcuts", "&Keyboard Shortcuts", "Show all keys", ("F1", "?"), "keyboard"),
@@ -174,7 +151,11 @@ MENUS = {
     "&Analysis": ANALYSIS,
     "&Play": PLAY,
     "&View": VIEW,
+    "&Workspace": WORKSPACE,
     "&Help": HELP,
 }
+
+HOMES = {"Fla&g": ("review",), "&Neighbour": ("review",), "&Analysis": ("review",)}
+"""Menus that belong to some workspaces only, by title."""
 
 COMMANDS = {one.name: one for menu in MENUS.values() for one in menu if one is not SEPARATOR}

@@ -7,7 +7,7 @@ from pathlib import Path
 from PySide6.QtCore import QSize, Qt, QTimer
 from PySide6.QtGui import QCloseEvent, QGuiApplication, QMouseEvent
 from PySide6.QtOpenGLWidgets import QOpenGLWidget
-from PySide6.QtWidgets import QApplication, QLineEdit, QMainWindow, QSpinBox, QStackedWidget
+from PySide6.QtWidgets import QApplication, QLineEdit, QMainWindow, QSpinBox
 
 from mocapstudio.gui import icons, settings, theme
 from mocapstudio.gui.actions import Actions
@@ -23,6 +23,7 @@ from mocapstudio.gui.opening import AS_THEY_ARE, Manner
 from mocapstudio.gui.playback import Playback
 from mocapstudio.gui.reasons import Reasons
 from mocapstudio.gui.status_bar import DeskStatusBar
+from mocapstudio.gui.switching import Switching
 from mocapstudio.gui.trouble import Trouble
 from mocapstudio.gui.views.toolbar import DeskToolBar
 from mocapstudio.gui.widgets.drop_zones import DropZones
@@ -58,15 +59,14 @@ class MainWindow(QMainWindow):
         self.toolbar = DeskToolBar(self.bridge, self.jobs, self.actions_)
         self.addToolBar(self.toolbar)
         self.setStatusBar(DeskStatusBar(self.bridge, self.messages))
-        self._pages = QStackedWidget()
-        self._pages.addWidget(self.welcome)
-        self._pages.addWidget(self.workspace)
-        self.setCentralWidget(self._pages)
+        self.drops = DropZones(self)
+        self.switching = Switching(self)
+        self.setCentralWidget(self.switching.pages)
+        self.drops.raise_()
         # A window that gets its first OpenGL child only later is torn down and built anew.
         self._opengl = QOpenGLWidget(self)
         self._opengl.setGeometry(0, 0, 1, 1)
         self._opengl.lower()
-        self.drops = DropZones(self)
         self.menus = self.actions_.fill(self.menuBar())
         wire(self)
         self.bridge.changed.connect(self._follow)
@@ -76,6 +76,7 @@ class MainWindow(QMainWindow):
         self._restore()
         self._follow(self.bridge.state, self.bridge.state)
         self.actions_.follow_ui(self.bridge.ui)
+        self.switching.restore()
 
     def start(self) -> None:
         """Show the window, then load what takes longer."""
@@ -103,7 +104,7 @@ class MainWindow(QMainWindow):
             return
         self.bridge.set_ui(playing=False)
         settings.set_layout("window", self.saveGeometry())
-        self.workspace.remember()
+        self.switching.remember()
         self.jobs.cancel()
         self.jobs.wait(5)
         self.journalling.close()
@@ -127,11 +128,6 @@ class MainWindow(QMainWindow):
         if old is not new and only_frame_differs(old, new):
             return
         self.actions_.follow_state(new)
-        page = self.workspace if new.scene.performers else self.welcome
-        if self._pages.currentWidget() is not page:
-            self.welcome.refresh()
-            self._pages.setCurrentWidget(page)
-        self.drops.offer_all(bool(new.scene.performers))
         name = "" if new.take is None else new.take.name
         if new.path is not None:
             name = f"{name} – {new.path.name}" if name else new.path.name

@@ -47,7 +47,6 @@ def _wire_files(window: MainWindow) -> None:
     window.welcome.demo_wanted.connect(files.open_demo)
     window.welcome.recovery_wanted.connect(files.recover)
     window.welcome.discard_wanted.connect(discard)
-    window.drops.dropped.connect(files.drop)
     on("analyse", window.analysing.again)
     on("cancel", window.jobs.cancel)
     on("learning", window.analysing.toggle_learning)
@@ -140,7 +139,7 @@ def _wire_recent(window: MainWindow) -> None:
 
 
 def _open(window: MainWindow, path: Path, _checked: bool = False) -> None:
-    window.files.open_paths([path])
+    window.switching.open_paths([path])
 
 
 def _set_mode(window: MainWindow, mode: str) -> None:

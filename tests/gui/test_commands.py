@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 
+import pytest
 from PySide6.QtCore import SIGNAL
 from PySide6.QtGui import QKeySequence
 from PySide6.QtWidgets import (
@@ -15,12 +16,18 @@ from PySide6.QtWidgets import (
     QTabBar,
 )
 
-from mocapstudio.gui.commands import COMMANDS, MENUS, SEPARATOR
+from mocapstudio.gui.commands import COMMANDS, HOMES, MENUS, SEPARATOR
+from mocapstudio.gui.workspaces.registry import WORKSPACES
 
 
-def test_no_key_has_two_commands():
+@pytest.mark.parametrize("workspace", [one.name for one in WORKSPACES])
+def test_no_key_has_two_commands_in_one_workspace(workspace):
     keys = Counter(
-        QKeySequence(key).toString() for command in COMMANDS.values() for key in command.keys
+        QKeySequence(key).toString()
+        for menu, commands in MENUS.items()
+        if workspace in HOMES.get(menu, (workspace,))
+        for command in commands
+        for key in command.keys
     )
     assert [key for key, count in keys.items() if count > 1] == []
 

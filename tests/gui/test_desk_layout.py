@@ -72,7 +72,7 @@ def test_the_viewport_shows_a_skeleton_in_the_window(hands, generated):
 def test_layout_and_theme_are_remembered(open_desk, qtbot, generated):
     hands = Hands(open_desk(), qtbot)
     open_take(hands, generated.take)
-    hands.press("4", CTRL)
+    hands.key(Qt.Key.Key_F9)
     hands.see(lambda: not hands.shows("curves"))
     splitter = hands.find("columns", QSplitter)
     splitter.setSizes([400, 700, 340])

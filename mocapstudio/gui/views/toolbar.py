@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QComboBox, QLabel, QSlider, QToolBar
+from PySide6.QtGui import QAction
+from PySide6.QtWidgets import QComboBox, QLabel, QSlider, QToolBar, QWidget
 
 from mocapstudio.cleaning.parameters import CALIBRATED, PAPER, schema
 from mocapstudio.gui.actions import Actions
@@ -11,6 +14,8 @@ from mocapstudio.gui.document import DocumentBridge, only_frame_differs
 from mocapstudio.gui.jobs import Jobs
 from mocapstudio.gui.widgets.job_strip import JobStrip
 from mocapstudio.gui.widgets.parts import label
+from mocapstudio.gui.widgets.workspace_switch import WorkspaceSwitch
+from mocapstudio.gui.workspaces.registry import WORKSPACES
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.review.state import DocumentState
 
@@ -36,29 +41,43 @@ class DeskToolBar(QToolBar):
         self.setMovable(False)
         self.setContextMenuPolicy(Qt.ContextMenuPolicy.PreventContextMenu)
         self._bridge = bridge
+        self._workspace = WORKSPACES[0].name
+        # What stands in the bar for some workspaces only, by workspace.
+        self._own: dict[str, list[QAction]] = {}
         self._context = actions.tool_button("context", text="Context")
-        self.addWidget(actions.tool_button("open", text="Open"))
-        self.addWidget(actions.tool_button("partner", text="Partner"))
-        self.addWidget(self._context)
-        self.addSeparator()
-        self.addWidget(actions.tool_button("analyse", text="Analyse"))
-        self.addWidget(JobStrip(jobs, actions.tool_button("cancel")))
         self._mode = self._make_mode()
         self._slider, self._value = self._make_threshold()
-        self.addWidget(self._mode)
+        titles = {f"workspace-{one.name}": one.text.replace("&", "") for one in WORKSPACES}
+        self.addWidget(WorkspaceSwitch([actions.tool_button(n, text=t) for n, t in titles.items()]))
         self.addSeparator()
+        self._for_review(actions.tool_button("open", text="Open"), actions.tool_button("partner"))
+        self._for_review(self._context, None, actions.tool_button("analyse", text="Analyse"))
+        self._strip = self.addWidget(JobStrip(jobs, actions.tool_button("cancel")))
         caption = label("Threshold", "muted")
         caption.setContentsMargins(4, 0, 4, 0)
-        self.addWidget(caption)
-        self.addWidget(self._slider)
-        self.addWidget(self._value)
-        self.addSeparator()
+        self._for_review(self._mode, None, caption, self._slider, self._value, None)
         self.addWidget(actions.tool_button("undo"))
         self.addWidget(actions.tool_button("redo"))
-        self.addSeparator()
-        self.addWidget(actions.tool_button("export", text="Export"))
+        self._for_review(None, actions.tool_button("export"))
         bridge.changed.connect(self._follow)
         self._show(bridge.state)
+
+    def add_tools(self, workspace: str, tools: Sequence[QWidget]) -> None:
+        """Add what a workspace has in the bar; it is shown while that one is in front."""
+        made = [self.insertWidget(self._strip, one) for one in tools]
+        self._own.setdefault(workspace, []).extend(made)
+        self.follow_workspace(self._workspace)
+
+    def follow_workspace(self, name: str) -> None:
+        """Show what belongs to the workspace in front."""
+        self._workspace = name
+        for workspace, tools in self._own.items():
+            for one in tools:
+                one.setVisible(workspace == name)
+
+    def _for_review(self, *tools: QWidget | None) -> None:
+        made = [self.addSeparator() if one is None else self.addWidget(one) for one in tools]
+        self._own.setdefault("review", []).extend(made)
 
     def _make_mode(self) -> QComboBox:
         combo = QComboBox()
@@ -79,7 +98,7 @@ class DeskToolBar(QToolBar):
         known = schema("threshold")
         slider.setRange(round(_STEPS * (known.low or 0.0)), round(_STEPS * (known.high or 1.0)))
         slider.setPageStep(5)
-        slider.setFixedWidth(150)
+        slider.setFixedWidth(104)
         slider.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         slider.setToolTip(f"{known.help}, 0 to 1 (+ and − move it)")
         # Only the user's own moves: a threshold set elsewhere must not come back rounded.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from PySide6.QtCore import QEvent, QObject, Qt, Signal
@@ -15,6 +16,8 @@ ZONES = {
     "open": ("open", "Open for review", "as a take of its own"),
     "partner": ("partner", "Add as partner", "into the same scene"),
     "context": ("context", "Use as context", "search it for neighbours"),
+    "reference": ("flag", "Use as reference", "what the others are compared with"),
+    "sources": ("compare", "Compare", "set beside the reference"),
 }
 
 
@@ -40,7 +43,7 @@ class DropZones(QWidget):
         self.setAttribute(Qt.WidgetAttribute.WA_NativeWindow)
         self.setAcceptDrops(True)
         self._zones: dict[str, QFrame] = {}
-        self._several = False
+        self._offered: tuple[str, ...] = ("open",)
         row = QHBoxLayout(self)
         row.setContentsMargins(60, 60, 60, 60)
         row.setSpacing(24)
@@ -51,16 +54,16 @@ class DropZones(QWidget):
         window.installEventFilter(self)
         self.hide()
 
-    def offer_all(self, several: bool) -> None:
-        """Offer all zones, or only to open while nothing is open yet."""
-        self._several = several
+    def offer(self, zones: Sequence[str]) -> None:
+        """Say which zones there are for files that are dropped from now on."""
+        self._offered = tuple(zones)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Appear when files come over the window."""
         if isinstance(event, QDragEnterEvent) and _files(event):
             self._recolour()
             for name, zone in self._zones.items():
-                zone.setVisible(self._several or name == "open")
+                zone.setVisible(name in self._offered)
             self.setGeometry(self._window.rect())
             self.raise_()
             self.show()
@@ -97,10 +100,8 @@ class DropZones(QWidget):
             self.dropped.emit(zone, paths)
 
     def _zone_at(self, event: QDropEvent) -> str:
-        if not self._several:
-            return "open"
         x = event.position().x()
-        shown = list(self._zones.items())
+        shown = [(name, self._zones[name]) for name in self._offered]
         return min(shown, key=lambda one: abs(one[1].geometry().center().x() - x))[0]
 
     def _recolour(self) -> None:

@@ -18,6 +18,7 @@ from mocapstudio.gui.views.inspector import InspectorView
 from mocapstudio.gui.views.queue import QueueView
 from mocapstudio.gui.views.transport import TransportView
 from mocapstudio.gui.widgets.parts import label, panel
+from mocapstudio.gui.workspaces.workspace import Workspace
 
 if TYPE_CHECKING:
     from mocapstudio.gui.views.curves import CurvesView
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from mocapstudio.gui.views.viewport import Viewport
 
 
-class ReviewWorkspace(QWidget):
+class ReviewWorkspace(Workspace):
     """Lays the five parts out in splitters.
 
     Viewport, map and curves come a moment after the rest: what they are drawn with takes a second
