@@ -17,7 +17,7 @@ from mocapstudio.formats.asf_find import find_skeleton
 from mocapstudio.formats.asf_read import Angles, Asf, read_asf
 from mocapstudio.formats.asf_text import plain_lines
 from mocapstudio.formats.bvh_read import in_metres, turn_inside
-from mocapstudio.formats.guesses import guess_unit, guess_up, turn_to_y_up
+from mocapstudio.formats.guesses import guess_unit, guess_up, turn_to_inside
 from mocapstudio.formats.options import ReadOptions, Up, parse_rate
 from mocapstudio.formats.report import ImportReport, Problem
 from mocapstudio.motion.errors import FileError, ParameterError
@@ -85,7 +85,7 @@ def read_amc(path: Path, data: bytes, options: ReadOptions) -> tuple[list[Take],
         "amc",
         hashlib.sha256(data).hexdigest(),
         _unit(asf, take.skeleton, options, problems),
-        turn_to_y_up(_up(take, options, problems)),
+        turn_to_inside(_up(take, options, problems), options.forward),
         record=AmcRecord(asf, angles),
     )
     take = Take(

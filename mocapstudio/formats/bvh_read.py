@@ -20,7 +20,7 @@ from mocapstudio.formats.guesses import (
     guess_unit,
     guess_up,
     synthetic_start,
-    turn_to_y_up,
+    turn_to_inside,
 )
 from mocapstudio.formats.options import ReadOptions, Up
 from mocapstudio.formats.reading import Reading
@@ -144,7 +144,9 @@ def _take(
     unit = _unit(reading, layout.skeleton, options)
     up = _up(reading, layout, rotations, translations, options)
     record = BvhRecord(reading.data, block, layout)
-    source = Source(reading.path, "bvh", digest, unit, turn_to_y_up(up), performer, record)
+    source = Source(
+        reading.path, "bvh", digest, unit, turn_to_inside(up, options.forward), performer, record
+    )
     return Take(
         name=reading.path.stem,
         skeleton=in_metres(layout.skeleton, unit),

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapstudio.formats.options import UNITS, Up
+from mocapstudio.formats.options import UNITS, Forward, Up
 from mocapstudio.motion import rotations as rot
+from mocapstudio.motion.errors import ParameterError
 from mocapstudio.motion.kinematics import global_pose
 from mocapstudio.motion.skeleton import Skeleton
 from mocapstudio.motion.topology import topology
@@ -83,6 +84,24 @@ def turn_to_y_up(up: Up) -> Array:
     if up == "x":
         return np.array([0.0, 0.0, quarter, quarter])
     return rot.IDENTITY.copy()
+
+
+def turn_to_inside(up: Up, forward: Forward | None = None) -> Array:
+    """Quaternion that turns a world with these axes into one where Y is up and, if told, Z forward.
+
+    Raises
+    ------
+    ParameterError
+        If forward is along the axis that points up.
+    """
+    if forward is None:
+        return turn_to_y_up(up)
+    if forward[-1] == up:
+        raise ParameterError(f"forward {forward} is along the up axis {up}")
+    rise, ahead = np.eye(3)["xyz".index(up)], np.eye(3)["xyz".index(forward[-1])]
+    if forward.startswith("-"):
+        ahead = -ahead
+    return rot.from_matrix(np.stack([np.cross(rise, ahead), rise, ahead]))
 
 
 def synthetic_start(rotations: Array) -> int:

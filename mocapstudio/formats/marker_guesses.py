@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 _BODY_METRES = 1.6
 _LOOKED_AT = 60
 _HIGH = re.compile(
-    r"head|hd\d?$|skull|neck|^c7|t2$|clav|shoulder|sho\d?$|acr(om)?|nose|eye|ear", re.IGNORECASE
+    r"head|hd\d?$|skull|neck|^c7|t2$|clav|shoulder|sho\d?$|acrom|^[lr]acr$|nose|eyes?$|(^|[lr_. ])ears?$", re.IGNORECASE
 )
 _LOW = re.compile(r"foot|feet|toe|heel|hee$|ank|mt\d|met\d|calc|malleol|mal$", re.IGNORECASE)
 
@@ -32,7 +32,9 @@ def guess_marker_unit(positions: Array) -> tuple[float, str]:
     size = float(np.median(sizes)) if sizes else 0.0
     if size <= 0:
         return UNITS["mm"], "usual for markers"
-    unit = min((UNITS[u] for u in ("m", "cm", "mm")), key=lambda u: abs(np.log(u * size / _BODY_METRES)))
+    unit = min(
+        (UNITS[u] for u in ("m", "cm", "mm")), key=lambda u: abs(np.log(u * size / _BODY_METRES))
+    )
     return unit, f"a body of {size * unit:.2f} m"
 
 

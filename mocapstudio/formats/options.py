@@ -10,6 +10,7 @@ from typing import Literal
 from mocapstudio.motion.errors import ParameterError
 
 Up = Literal["x", "y", "z"]
+Forward = Literal["x", "-x", "y", "-y", "z", "-z"]
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "asf": 0.0254 / 0.45}
 """Metres per unit by name; ``asf`` is the 1/0.45 inch of the CMU database."""
@@ -27,6 +28,9 @@ class ReadOptions:
         Metres per unit of the file.
     up
         The file's world axis that points up.
+    forward
+        The file's world axis that becomes our Z; None turns the world as little as the up axis
+        needs.
     angles
         Unit of the file's rotation channels.
     root_offset
@@ -40,6 +44,7 @@ class ReadOptions:
     fps: Fraction | None = None
     unit: float | None = None
     up: Up | None = None
+    forward: Forward | None = None
     angles: Literal["degrees", "radians"] = "degrees"
     root_offset: Literal["replace", "add"] = "replace"
     trim_start: bool = True
@@ -64,6 +69,8 @@ class WriteOptions:
         Write only the frames of `Take.trim`.
     anew
         Do not keep the source's text: for takes that were cut, resampled or retargeted.
+    table
+        What a table of a skeleton's take holds: where its joints are, or their Euler angles.
     """
 
     order: str | None = None
@@ -72,6 +79,7 @@ class WriteOptions:
     up: Up | None = None
     trim: bool = False
     anew: bool = False
+    table: Literal["positions", "angles"] | None = None
 
     def __post_init__(self) -> None:
         if self.order is not None and sorted(self.order) != ["X", "Y", "Z"]:
@@ -82,7 +90,7 @@ class WriteOptions:
     @property
     def relayout(self) -> bool:
         """True where the source's text is not kept."""
-        asked = (self.order, self.channels, self.unit, self.up)
+        asked = (self.order, self.channels, self.unit, self.up, self.table)
         return self.anew or any(choice is not None for choice in asked)
 
 

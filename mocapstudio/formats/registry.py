@@ -14,6 +14,8 @@ from mocapstudio.formats.c3d_layout import looks_like_c3d
 from mocapstudio.formats.c3d_read import read_c3d
 from mocapstudio.formats.options import ReadOptions, WriteOptions
 from mocapstudio.formats.report import ImportReport
+from mocapstudio.formats.trc_read import looks_like_trc, read_trc
+from mocapstudio.formats.trc_write import write_trc
 from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.errors import FileError
 from mocapstudio.motion.markers import MarkerTake
@@ -58,6 +60,7 @@ class Format:
 FORMATS = (
     Format("bvh", (".bvh",), looks_like_bvh, read_bvh, write_bvh),
     Format("amc", (".amc",), looks_like_amc, read_amc),
+    Format("trc", (".trc",), looks_like_trc, read_trc, write_markers=write_trc),
     Format("c3d", (".c3d",), looks_like_c3d, read_c3d),
 )
 

@@ -52,6 +52,10 @@ def _rebuild_file_error(
     return kind(path, cause, line=line, offset=offset)
 
 
+class NoRateError(FileError):
+    """A file that states no frame rate and leaves nothing to tell it by: the user is asked."""
+
+
 class SkeletonMismatchError(MocapError):
     """Two takes whose joints cannot be matched by name."""
 
