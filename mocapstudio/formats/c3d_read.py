@@ -38,8 +38,10 @@ class C3dRecord:
         The whole file.
     layout
         Where its samples lie.
+    labels
+        The take's markers as they were read.
     points
-        Index in the file of each of the take's markers.
+        Index in the file of each of them.
     units
         Metres per unit of each of them.
     parameters
@@ -48,6 +50,7 @@ class C3dRecord:
 
     data: bytes
     layout: Layout
+    labels: tuple[str, ...]
     points: NDArray[np.int64]
     units: Array
     parameters: Parameters
@@ -138,12 +141,13 @@ def _takes(
     takes = []
     for performer, (name, chosen) in enumerate(subjects(markers, parameters, problems)):
         own = np.array(chosen, dtype=np.int64)
-        record = C3dRecord(data, layout, own, space.units[own], parameters)
+        named = tuple(markers[i] for i in chosen)
+        record = C3dRecord(data, layout, named, own, space.units[own], parameters)
         source = Source(path, "c3d", digest, space.unit, space.to_inside, performer, record)
         takes.append(
             MarkerTake(
                 name=f"{path.stem} {name}".rstrip(),
-                labels=tuple(markers[i] for i in chosen),
+                labels=named,
                 positions=inside(points.xyz[:, own], record.units, source.to_inside),
                 rate=frequency,
                 first_frame=layout.first_frame,

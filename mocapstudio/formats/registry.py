@@ -12,6 +12,7 @@ from mocapstudio.formats.bvh_read import looks_like_bvh, read_bvh
 from mocapstudio.formats.bvh_write import write_bvh
 from mocapstudio.formats.c3d_layout import looks_like_c3d
 from mocapstudio.formats.c3d_read import read_c3d
+from mocapstudio.formats.c3d_write import write_c3d
 from mocapstudio.formats.options import ReadOptions, WriteOptions
 from mocapstudio.formats.report import ImportReport
 from mocapstudio.formats.trc_read import looks_like_trc, read_trc
@@ -61,7 +62,7 @@ FORMATS = (
     Format("bvh", (".bvh",), looks_like_bvh, read_bvh, write_bvh),
     Format("amc", (".amc",), looks_like_amc, read_amc),
     Format("trc", (".trc",), looks_like_trc, read_trc, write_markers=write_trc),
-    Format("c3d", (".c3d",), looks_like_c3d, read_c3d),
+    Format("c3d", (".c3d",), looks_like_c3d, read_c3d, write_markers=write_c3d),
 )
 
 
