@@ -1,0 +1,1 @@
+"""Inverse kinematics over the whole body and over time: objectives, limits, solve, clean-up."""

@@ -1,0 +1,98 @@
+"""What may move: the unknowns of a frame, and how stiff each of them is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapstudio.cleaning.ik.ranges import JointRanges
+from mocapstudio.motion.skeleton import Skeleton
+from mocapstudio.motion.topology import topology
+
+Array = NDArray[np.float64]
+
+_ROOT_STIFFNESS = np.array([20.0, 8.0, 20.0])
+"""Per metre, against 1 per radian of a joint that turns as widely as a hip: the hips give way
+where a leg is nearly straight, and hardly elsewhere."""
+
+
+@dataclass(frozen=True, eq=False)
+class Freedom:
+    """The n unknowns of a frame: how far the body departs from the motion as it was.
+
+    First, where `moves`, the displacement of the body in the world (3, metres); then three a joint
+    of `joints`: the rotation vector, in the joint's own frame and along its natural axes, by which
+    it is turned further than before (radians). All zeros is the motion as it was.
+
+    Parameters
+    ----------
+    joints
+        (m,) indices of the joints that may turn, parents before children.
+    axes
+        (m, 3, 3): columns are the natural axes of each joint in its own frame.
+    stiffness
+        (n,) cost of each unknown: per metre or per radian.
+    moves
+        Whether the body as a whole may be displaced.
+    """
+
+    joints: tuple[int, ...]
+    axes: Array
+    stiffness: Array
+    moves: bool
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns in a frame."""
+        return len(self.stiffness)
+
+    def columns(self, joint: int) -> slice:
+        """Where the three unknowns of a joint stand."""
+        at = 3 * self.joints.index(joint) + (3 if self.moves else 0)
+        return slice(at, at + 3)
+
+
+def freedom(
+    joints: Iterable[int], ranges: JointRanges, *, moves: bool, factor: Array | None = None
+) -> Freedom:
+    """Let some joints turn, each the more easily about an axis the more it turns about it anyway.
+
+    Parameters
+    ----------
+    joints
+        Indices of the joints.
+    ranges
+        How far each joint of the skeleton turns (see `ranges.joint_ranges`).
+    moves
+        Whether the body may be displaced.
+    factor
+        (J,) further factor on the stiffness of every joint of the skeleton, or None.
+    """
+    chosen = tuple(sorted(set(joints)))
+    at = list(chosen)
+    turning = ranges.stiffness[at] if factor is None else ranges.stiffness[at] * factor[at, None]
+    place = _ROOT_STIFFNESS if moves else np.zeros(0)
+    return Freedom(chosen, ranges.axes[at], np.concatenate([place, turning.ravel()]), moves)
+
+
+def chain(skeleton: Skeleton, joint: int, ranges: JointRanges) -> tuple[int, ...]:
+    """Joints that bring `joint` to a place: its limb's, from the limb's start down to itself.
+
+    Joints that never turn, such as the halves of a hip that some systems record, stay rigid; a
+    joint of the trunk is reached by the trunk from the hips on. Joints above the hips move the
+    world and never turn.
+    """
+    parts = topology(skeleton)
+    if joint in parts.above_hips:
+        return ()
+    limb = parts.limb_of(joint)
+    up = [joint, *skeleton.ancestors(joint)]
+    below_hips = [j for j in up if j not in parts.above_hips]
+    inside = [j for j in below_hips if j in limb.joints]
+    if limb.name == "head":
+        inside = [j for j in below_hips if j != parts.hips]
+    turning = [j for j in inside if not ranges.rigid[j]]
+    return tuple(sorted(turning or inside))

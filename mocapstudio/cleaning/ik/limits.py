@@ -1,0 +1,81 @@
+"""Limits: what a solution keeps within, as soft or as nearly hard bounds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapstudio.cleaning.ik import turns
+from mocapstudio.cleaning.ik.objectives.rows import Rows
+from mocapstudio.cleaning.ik.posed import Posed
+from mocapstudio.motion import rotations as rot
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class RangeLimit:
+    """A joint stays within its range, or as far outside as it was before.
+
+    The residual is the excess over the bounds, in radians times `weight`, about each natural axis.
+
+    Parameters
+    ----------
+    joint
+        Index of a joint that may turn.
+    mean
+        (4,) mean local rotation.
+    axes
+        (3, 3) natural axes, as those of the unknowns.
+    low, high
+        (F, 3) radians, or (3,).
+    weight
+        Per radian: large for a bound that is as good as hard.
+    """
+
+    joint: int
+    mean: Array
+    axes: Array
+    low: Array
+    high: Array
+    weight: float
+
+    def rows(self, posed: Posed) -> Rows:
+        """Excess (F, 3) and its derivative by the unknowns."""
+        local = posed.local(self.joint)
+        away = turns.log(rot.to_matrix(self.mean).T @ local)
+        along = away @ self.axes
+        excess = along - np.clip(along, self.low, self.high)
+        step = turns.inverse_right_jacobian(away) @ posed.local_partials(self.joint)
+        outside = np.nonzero(excess.any(axis=1))[0]
+        jacobian = np.zeros((len(outside), 3, posed.freedom.size))
+        active = (excess[outside] != 0)[..., None] * self.weight
+        jacobian[:, :, posed.freedom.columns(self.joint)] = active * (self.axes.T @ step[outside])
+        return Rows(outside, self.weight * excess[outside], jacobian)
+
+
+@dataclass(frozen=True, eq=False)
+class ReachLimit:
+    """The body is displaced by no more than a radius.
+
+    Parameters
+    ----------
+    radius
+        Metres.
+    weight
+        Per metre.
+    """
+
+    radius: float
+    weight: float
+
+    def rows(self, posed: Posed) -> Rows:
+        """Excess (F, 1) of the displacement over the radius."""
+        place = posed.unknowns[:, :3]
+        length = np.linalg.norm(place, axis=1)
+        outside = np.nonzero(length > self.radius)[0]
+        jacobian = np.zeros((len(outside), 1, posed.freedom.size))
+        jacobian[:, 0, :3] = self.weight * place[outside] / length[outside, None]
+        return Rows(outside, self.weight * (length[outside, None] - self.radius), jacobian)

@@ -1,0 +1,1 @@
+"""Objectives: small objects that give residual and analytic Jacobian."""

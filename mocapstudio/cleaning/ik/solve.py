@@ -1,0 +1,207 @@
+"""Damped least squares over a window of frames (Levenberg-Marquardt).
+
+Unknowns of one frame meet those of other frames only through differences in time, so the normal
+matrix is banded: one Cholesky factorisation costs as much time as there are frames. Damping after
+Marquardt, with Nielsen's rule (Madsen, Nielsen and Tingleff, *Methods for Non-Linear Least Squares
+Problems*, 2004, algorithm 3.16).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
+
+from mocapstudio.cleaning.ik.freedom import Freedom
+from mocapstudio.cleaning.ik.objectives.rows import Objective, Rows, TimeObjective
+from mocapstudio.cleaning.ik.posed import Posed, Window
+
+Array = NDArray[np.float64]
+
+_SETTLED = 1e-6
+"""Relative fall of the cost below which a solution is settled."""
+_FIRST_DAMPING = 1e-8
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """What is wanted of a window.
+
+    Parameters
+    ----------
+    window
+        F frames of the motion as it was.
+    freedom
+        n unknowns a frame.
+    objectives
+        Wishes on single frames.
+    over_time
+        Wishes on the unknowns over time.
+    """
+
+    window: Window
+    freedom: Freedom
+    objectives: Sequence[Objective]
+    over_time: Sequence[TimeObjective]
+
+    def posed(self, unknowns: Array) -> Posed:
+        """Pose the window's body."""
+        return Posed(self.window, self.freedom, unknowns)
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Where the search ended.
+
+    Attributes
+    ----------
+    unknowns
+        (F, n).
+    cost
+        Half the sum of squares.
+    steps
+        How many linear systems were solved.
+    settled
+        Whether the cost had stopped falling.
+    """
+
+    unknowns: Array
+    cost: float
+    steps: int
+    settled: bool
+
+
+def cost(problem: Problem, unknowns: Array) -> float:
+    """Half the sum of squared residuals."""
+    return _cost(problem, unknowns, _rows(problem, unknowns))
+
+
+def solve(problem: Problem, start: Array | None = None, most_steps: int = 30) -> Solution:
+    """Minimise the sum of squares.
+
+    Parameters
+    ----------
+    problem
+        F frames, n unknowns each.
+    start
+        (F, n) first guess: warm start; by default the motion as it was.
+    most_steps
+        Bound on the linear systems solved.
+    """
+    frames, size = problem.window.frames, problem.freedom.size
+    unknowns = np.zeros((frames, size)) if start is None else start
+    rows = _rows(problem, unknowns)
+    now = _cost(problem, unknowns, rows)
+    if size == 0:
+        return Solution(unknowns, now, 0, True)
+    fixed = _time_band(problem)
+    damping, growth = _FIRST_DAMPING, 2.0
+    band, gradient = _normal(problem, fixed, unknowns, rows)
+    for step in range(1, most_steps + 1):
+        move = _damped_step(band, gradient, damping)
+        if move is None:
+            damping, growth = damping * growth, growth * 2
+            continue
+        expected = 0.5 * float(np.sum(move * (damping * _diagonal(band, move) * move - gradient)))
+        rows = _rows(problem, unknowns + move)
+        fall = now - _cost(problem, unknowns + move, rows)
+        if fall < 0 and expected > _SETTLED * now:
+            damping, growth = max(damping, 1e-6) * growth, growth * 2
+            continue
+        if fall < 0:
+            return Solution(unknowns, now, step, True)
+        unknowns, now = unknowns + move, now - fall
+        if fall <= _SETTLED * now:
+            return Solution(unknowns, now, step, True)
+        damping *= max(1.0 / 3.0, 1.0 - (2.0 * fall / expected - 1.0) ** 3)
+        growth = 2.0
+        band, gradient = _normal(problem, fixed, unknowns, rows)
+    return Solution(unknowns, now, most_steps, False)
+
+
+def _rows(problem: Problem, unknowns: Array) -> list[Rows]:
+    posed = problem.posed(unknowns)
+    return [one.rows(posed) for one in problem.objectives]
+
+
+def _cost(problem: Problem, unknowns: Array, rows: Sequence[Rows]) -> float:
+    total = sum(float(np.sum(one.residual**2)) for one in rows)
+    for wish in problem.over_time:
+        total += float(np.sum(_differences(wish, unknowns) ** 2))
+    return 0.5 * total
+
+
+def _differences(wish: TimeObjective, unknowns: Array) -> Array:
+    """(F + k, n) weighted residuals of one wish over time."""
+    away = unknowns if wish.reference is None else unknowns - wish.reference
+    order = len(wish.difference) - 1
+    padded = np.pad(away, ((order, order), (0, 0)))
+    rows = len(away) + order
+    total = sum(wish.difference[i][:, None] * padded[i : i + rows] for i in range(order + 1))
+    return np.asarray(total * wish.weights)
+
+
+def _time_gradient(wish: TimeObjective, unknowns: Array) -> Array:
+    residual = _differences(wish, unknowns) * wish.weights
+    frames = len(unknowns)
+    order = len(wish.difference) - 1
+    # Row j of the residual weighs frame j - k + i by difference[i, j].
+    total = np.zeros_like(unknowns)
+    for i in range(order + 1):
+        at = slice(order - i, order - i + frames)
+        total += wish.difference[i, at, None] * residual[at]
+    return total
+
+
+def _time_band(problem: Problem) -> Array:
+    """Lower band (k n + 1, F, n) of what wishes over time add: it never changes."""
+    frames, size = problem.window.frames, problem.freedom.size
+    most = max((len(wish.difference) - 1 for wish in problem.over_time), default=0)
+    band = np.zeros((max(most * size, size - 1) + 1, frames, size))
+    for wish in problem.over_time:
+        d = wish.difference
+        order = len(d) - 1
+        for apart in range(order + 1):
+            gram = np.zeros(frames)
+            for i in range(order + 1 - apart):
+                at = slice(order - i, order - i + frames)
+                gram += d[i, at] * d[i + apart, at]
+            band[apart * size, : frames - apart] += gram[: frames - apart, None] * wish.weights**2
+    return band
+
+
+def _normal(
+    problem: Problem, fixed: Array, unknowns: Array, rows: Sequence[Rows]
+) -> tuple[Array, Array]:
+    """Lower band of the normal matrix (b, F n), and the gradient (F, n)."""
+    frames, size = unknowns.shape
+    gradient = np.zeros_like(unknowns)
+    blocks = np.zeros((frames, size, size))
+    for wish in problem.over_time:
+        gradient += _time_gradient(wish, unknowns)
+    for one in rows:
+        across = np.swapaxes(one.jacobian, 1, 2)
+        gradient[one.frames] += (across @ one.residual[..., None])[..., 0]
+        blocks[one.frames] += across @ one.jacobian
+    band = fixed.copy()
+    for apart in range(size):
+        band[apart, :, : size - apart] += np.diagonal(blocks, -apart, axis1=1, axis2=2)
+    return band.reshape(len(band), frames * size), gradient
+
+
+def _diagonal(band: Array, like: Array) -> Array:
+    return band[0].reshape(like.shape)
+
+
+def _damped_step(band: Array, gradient: Array, damping: float) -> Array | None:
+    system = np.array(band, order="F")
+    system[0] *= 1.0 + damping
+    try:
+        factor = cholesky_banded(system, overwrite_ab=True, lower=True, check_finite=False)
+    except LinAlgError:
+        return None
+    step = cho_solve_banded((factor, True), -gradient.ravel(), check_finite=False)
+    return np.asarray(step.reshape(gradient.shape))

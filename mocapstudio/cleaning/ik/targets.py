@@ -1,0 +1,229 @@
+"""Where each contact is held: targets as the contacts say them, laid out over their frames.
+
+A contact with a floor says only that its point stands still on a plane; where on it, is chosen so
+that the motion is disturbed least.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapstudio.cleaning.contacts.model import Contact, ContactPoint, Fixed, Floor, Line
+from mocapstudio.cleaning.ik.objectives.position import across
+from mocapstudio.motion import rotations as rot
+from mocapstudio.motion.errors import MocapError
+from mocapstudio.motion.kinematics import take_pose
+from mocapstudio.motion.take import Take
+from mocapstudio.motion.topology import topology
+
+Array = NDArray[np.float64]
+
+_SLOW = 0.05
+"""Metres a second: frames in which the point is faster count less for where it stood."""
+_AGREED = 1e-5
+_ROUNDS = 200
+
+
+@dataclass(frozen=True, eq=False)
+class Hold:
+    """One contact in terms of a take.
+
+    Attributes
+    ----------
+    contact
+        The contact.
+    joint, offset
+        Index of the joint, and the point (3,) metres in its frame.
+    place
+        (m, 3) metres: where the point was in the world over the contact's m frames.
+    target
+        (m, 3) metres: where it is to be.
+    projection
+        (r, 3): rows are the unit directions in which it is held.
+    """
+
+    contact: Contact
+    joint: int
+    offset: Array
+    place: Array
+    target: Array
+    projection: Array
+
+    @property
+    def frames(self) -> NDArray[np.int64]:
+        """(m,) frames of the take."""
+        return np.arange(self.contact.start, self.contact.end)
+
+    def gap(self, place: Array) -> Array:
+        """(m,) metres between a point that is at `place` (m, 3) and the target, where held."""
+        return np.asarray(np.linalg.norm((place - self.target) @ self.projection.T, axis=1))
+
+
+def holds(
+    take: Take,
+    contacts: Sequence[Contact],
+    points: Sequence[ContactPoint],
+    others: Mapping[str, Take],
+) -> tuple[Hold, ...]:
+    """Lay contacts out over their frames.
+
+    Parameters
+    ----------
+    take
+        F frames.
+    contacts
+        In any order; spans inside the take.
+    points
+        The performer's contact points; a contact whose `point` is None and is not among them means
+        the joint itself.
+    others
+        Takes of the performers that targets follow, by id: as many frames, at the same rate.
+
+    Raises
+    ------
+    MocapError
+        If a joint, point or performer is unknown, or a span is empty or leaves the take.
+    """
+    pose = take_pose(take)
+    offsets = {point.key: np.asarray(point.offset, dtype=float) for point in points}
+    laid = [_hold(take, pose, contact, offsets, others) for contact in contacts]
+    return _agree(take, laid)
+
+
+def _hold(
+    take: Take,
+    pose: tuple[Array, Array],
+    contact: Contact,
+    offsets: Mapping[tuple[str, str | None], Array],
+    others: Mapping[str, Take],
+) -> Hold:
+    who = f"contact {contact.id}"
+    if contact.joint not in take.skeleton.index:
+        raise MocapError(f"{who}: {take.name} has no joint {contact.joint}")
+    if not 0 <= contact.start < contact.end <= take.frames:
+        raise MocapError(
+            f"{who}: frames {contact.start} to {contact.end} are none of"
+            f" {take.name}'s {take.frames}"
+        )
+    key = (contact.joint, contact.point)
+    if key not in offsets and contact.point is not None:
+        raise MocapError(f"{who}: {contact.joint} has no point {contact.point}")
+    joint = take.skeleton.index[contact.joint]
+    offset = offsets.get(key, np.zeros(3))
+    span = slice(contact.start, contact.end)
+    place = pose[0][span, joint] + rot.rotate(pose[1][span, joint], offset)
+    target, projection = _target(take, contact, place, others)
+    return Hold(contact, joint, offset, place, target, projection)
+
+
+def _target(
+    take: Take, contact: Contact, place: Array, others: Mapping[str, Take]
+) -> tuple[Array, Array]:
+    target = contact.target
+    if isinstance(target, Fixed):
+        return np.broadcast_to(np.array(target.position), place.shape), np.eye(3)
+    if isinstance(target, Line):
+        direction = _unit(contact, target.direction)
+        return np.broadcast_to(np.array(target.position), place.shape), across(direction)
+    if isinstance(target, Floor):
+        normal = _unit(contact, target.normal)
+        stand = standing_place(place, float(take.rate))
+        return np.broadcast_to(_on_plane(stand, normal, target.height), place.shape), np.eye(3)
+    other = others.get(target.performer)
+    if other is None:
+        raise MocapError(f"contact {contact.id}: no performer {target.performer}")
+    if other.frames != take.frames or other.rate != take.rate:
+        raise MocapError(f"contact {contact.id}: {other.name} is not as long as {take.name}")
+    if target.joint not in other.skeleton.index:
+        raise MocapError(f"contact {contact.id}: {other.name} has no joint {target.joint}")
+    positions, world = take_pose(other, contact.start, contact.end)
+    joint = other.skeleton.index[target.joint]
+    return positions[:, joint] + rot.rotate(world[:, joint], np.array(target.offset)), np.eye(3)
+
+
+def _unit(contact: Contact, direction: tuple[float, float, float]) -> Array:
+    length = float(np.linalg.norm(direction))
+    if not np.isfinite(length) or length < 1e-9:
+        raise MocapError(f"contact {contact.id}: its direction has no length")
+    return np.array(direction) / length
+
+
+def standing_place(place: Array, rate: float) -> Array:
+    """(3,) metres: where a point (m, 3) stood, its slow frames counting most."""
+    if len(place) < 2:
+        return np.asarray(place[0])
+    speed = np.linalg.norm(np.gradient(place, axis=0), axis=1) * rate
+    weight = 1.0 / (1.0 + (speed / _SLOW) ** 2)
+    return np.asarray(weight @ place / weight.sum())
+
+
+def _on_plane(place: Array, normal: Array, height: float) -> Array:
+    """Project along the vertical's share of the normal: `height` is that of the place itself."""
+    if abs(normal[1]) < 1e-6:
+        return place
+    return np.asarray(place + normal * (height - place[1]) * normal[1])
+
+
+def chosen_again(hold: Hold, place: Array, rate: float) -> Hold:
+    """Move a floor's target to where its point (m, 3) could be brought; others stay."""
+    if not isinstance(hold.contact.target, Floor):
+        return hold
+    floor = hold.contact.target
+    stand = _on_plane(place.mean(axis=0), _unit(hold.contact, floor.normal), floor.height)
+    return replace(hold, target=np.broadcast_to(stand, place.shape))
+
+
+def _agree(take: Take, laid: Sequence[Hold]) -> tuple[Hold, ...]:
+    """Let floor targets of one limb that overlap in time be as far apart as their points are.
+
+    Heel and ball of one foot cannot stand where each of them would on its own; distances are
+    corrected pair by pair, longer contacts giving way less, until all agree.
+    """
+    floors = [h for h in laid if isinstance(h.contact.target, Floor)]
+    spots = {id(h): h.target[0].copy() for h in floors}
+    pairs = [pair for a, b in combinations(floors, 2) if (pair := _pair(take, a, b)) is not None]
+    for _ in range(_ROUNDS):
+        worst = 0.0
+        for a, b, apart in pairs:
+            way = spots[id(a)] - spots[id(b)]
+            length = float(np.linalg.norm(way))
+            if length < 1e-9:
+                continue
+            excess = length - apart
+            worst = max(worst, abs(excess))
+            share = len(b.frames) / (len(a.frames) + len(b.frames))
+            spots[id(a)] -= _level(a, share * excess * way / length)
+            spots[id(b)] += _level(b, (1 - share) * excess * way / length)
+        if worst < _AGREED:
+            break
+    return tuple(
+        replace(h, target=np.broadcast_to(spots[id(h)], h.place.shape)) if id(h) in spots else h
+        for h in laid
+    )
+
+
+def _pair(take: Take, a: Hold, b: Hold) -> tuple[Hold, Hold, float] | None:
+    start = max(a.contact.start, b.contact.start)
+    end = min(a.contact.end, b.contact.end)
+    parts = topology(take.skeleton)
+    if start >= end or a.joint in parts.above_hips or b.joint in parts.above_hips:
+        return None
+    near = a.joint == b.joint or take.skeleton.parents[a.joint] == b.joint
+    near = near or take.skeleton.parents[b.joint] == a.joint
+    if not near or (a.joint == b.joint and np.array_equal(a.offset, b.offset)):
+        return None
+    one = a.place[start - a.contact.start : end - a.contact.start]
+    other = b.place[start - b.contact.start : end - b.contact.start]
+    return a, b, float(np.median(np.linalg.norm(one - other, axis=1)))
+
+
+def _level(hold: Hold, step: Array) -> Array:
+    floor = hold.contact.target
+    assert isinstance(floor, Floor)
+    normal = np.array(floor.normal) / np.linalg.norm(floor.normal)
+    return np.asarray(step - normal * (step @ normal))

@@ -1,0 +1,139 @@
+"""Windows of frames in which contacts are solved for, and what is wanted in them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapstudio.cleaning.contacts.anatomy import leg_length
+from mocapstudio.cleaning.ik.freedom import Freedom, chain, freedom
+from mocapstudio.cleaning.ik.limits import RangeLimit, ReachLimit
+from mocapstudio.cleaning.ik.objectives.orientation import Orientation
+from mocapstudio.cleaning.ik.objectives.over_time import KeepPose, Smoothness
+from mocapstudio.cleaning.ik.objectives.position import PointAtTarget
+from mocapstudio.cleaning.ik.objectives.rows import Objective, TimeObjective
+from mocapstudio.cleaning.ik.posed import Posed, window
+from mocapstudio.cleaning.ik.ranges import JointRanges
+from mocapstudio.cleaning.ik.solve import Problem
+from mocapstudio.cleaning.ik.targets import Hold
+from mocapstudio.motion import rotations as rot
+from mocapstudio.motion.skeleton import Skeleton
+from mocapstudio.motion.take import Take
+
+Array = NDArray[np.float64]
+
+_CONTACT_WEIGHT = 2e5
+"""Per metre: a departure of 0.1 rad is bought by a hundredth of a millimetre."""
+_LIMIT_WEIGHT = 1e3
+_REACH_WEIGHT = 2e6
+_TURN_WEIGHT = 2.0
+"""Per radian: feet and hands in contact keep their direction rather than their angle."""
+_SMOOTHNESS = 2.5
+"""Per metre: that of a joint 0.4 m from the end of its limb, 1 per radian."""
+_LEAST_LEVER = 0.05
+_FADES = 5.0
+"""The easing in lengths over which a smooth departure fades by e."""
+_ORDER = 3
+
+
+def cut(take: Take, holds: Sequence[Hold], easing: float) -> list[tuple[int, int]]:
+    """Half-open spans that hold all contacts with room to ease, those that meet joined.
+
+    Frames outside the take's trim stay out, unless a contact lies there.
+    """
+    room = max(2, round(easing * float(take.rate)))
+    low, high = take.span
+    if any(h.contact.start < low or h.contact.end > high for h in holds):
+        low, high = 0, take.frames
+    spans: list[tuple[int, int]] = []
+    for hold in sorted(holds, key=lambda h: h.contact.start):
+        start = max(low, hold.contact.start - room)
+        end = min(high, hold.contact.end + room)
+        if spans and start <= spans[-1][1]:
+            spans[-1] = (spans[-1][0], max(spans[-1][1], end))
+        else:
+            spans.append((start, end))
+    return spans
+
+
+def problem(
+    take: Take,
+    holds: Sequence[Hold],
+    span: tuple[int, int],
+    ranges: JointRanges,
+    easing: float,
+    root_reach: float,
+) -> Problem:
+    """State what is wanted of one window: contacts met, the rest as it was."""
+    start, end = span
+    ends = sorted({h.joint for h in holds})
+    joints = {j for end_joint in ends for j in chain(take.skeleton, end_joint, ranges)}
+    moves = root_reach > 0
+    free = freedom(joints, ranges, moves=moves)
+    view = window(take, start, end, [*ends, *joints])
+    asis = Posed(view, free, np.zeros((end - start, free.size)))
+    wishes: list[Objective] = [
+        PointAtTarget(
+            h.joint, h.offset, h.frames - start, h.target, _CONTACT_WEIGHT, h.projection
+        )
+        for h in holds
+    ]
+    every = np.arange(end - start)
+    wishes += [
+        Orientation(
+            j, every, asis.rotations[:, asis.at(j)].copy(), np.full(len(every), _TURN_WEIGHT)
+        )
+        for j in ends
+    ]
+    wishes += [range_limit(take, j, span, ranges, _LIMIT_WEIGHT) for j in free.joints]
+    if moves:
+        radius = root_reach * leg_length(take.skeleton)
+        wishes.append(ReachLimit(radius, _REACH_WEIGHT))
+    return Problem(view, free, wishes, smooth(take, free, span, easing))
+
+
+def range_limit(
+    take: Take, joint: int, span: tuple[int, int], ranges: JointRanges, weight: float
+) -> RangeLimit:
+    """Bound a joint by its range, widened where the take itself goes beyond it."""
+    q = rot.multiply(rot.conjugate(ranges.mean[joint]), take.rotations[slice(*span), joint])
+    own = rot.to_rotation_vector(q) @ ranges.axes[joint]
+    low = np.minimum(ranges.low[joint], own)
+    high = np.maximum(ranges.high[joint], own)
+    return RangeLimit(joint, ranges.mean[joint], ranges.axes[joint], low, high, weight)
+
+
+def smooth(
+    take: Take, free: Freedom, span: tuple[int, int], easing: float
+) -> tuple[TimeObjective, ...]:
+    """Keep the pose, and ease into and out of every departure within about `easing` seconds."""
+    start, end = span
+    low, high = take.span
+    length = max(1.0, easing * float(take.rate) / _FADES)
+    return (
+        KeepPose(end - start, free.stiffness),
+        Smoothness(
+            end - start,
+            levers(take.skeleton, free) * (_SMOOTHNESS * length**_ORDER),
+            _ORDER,
+            joins_before=start not in (0, low),
+            joins_after=end not in (take.frames, high),
+        ),
+    )
+
+
+
+
+def levers(skeleton: Skeleton, free: Freedom) -> Array:
+    """(n,) metres that the farthest tip moves with each unknown of 1: what is to move smoothly."""
+    place = skeleton.rest_positions
+    tips = place[skeleton.end_parents] + skeleton.end_offsets
+    found = [1.0] * 3 if free.moves else []
+    for joint in free.joints:
+        below = skeleton.descendants(joint)
+        ends = tips[np.isin(skeleton.end_parents, below)]
+        away = np.linalg.norm(np.concatenate([place[below], ends]) - place[joint], axis=1)
+        found += [max(float(away.max()), _LEAST_LEVER)] * 3
+    return np.array(found)
