@@ -145,8 +145,10 @@ def write_labels(labels: Labels | Sequence[Labels], path: Path) -> None:
     FileError
         If the file cannot be written; an older file of that name is then left as it was.
     """
-    content = labels.to_json() if isinstance(labels, Labels) else [one.to_json() for one in labels]
-    text = json.dumps(content, indent=1, ensure_ascii=False)
+    # A take a line, so that a person can read and change them.
+    many = [labels] if isinstance(labels, Labels) else labels
+    lines = ",\n ".join(json.dumps(one.to_json(), ensure_ascii=False) for one in many)
+    text = lines if isinstance(labels, Labels) else f"[{lines}]"
     write_whole(path, [(text + "\n").encode()])
 
 

@@ -166,4 +166,4 @@ def trace_back(steps: U8, newest: int, frame: int, end: int, path: I64) -> int:
             end -= 1
         at -= 1
         path[at, 0], path[at, 1] = end, frame
-    return at
+    return int(at)
