@@ -14,7 +14,9 @@ Array = NDArray[np.float64]
 _BODY_METRES = 1.6
 _LOOKED_AT = 60
 _HIGH = re.compile(
-    r"head|hd\d?$|skull|neck|^c7|t2$|clav|shoulder|sho\d?$|acrom|^[lr]acr$|nose|eyes?$|(^|[lr_. ])ears?$", re.IGNORECASE
+    r"head|hd\d?$|skull|neck|^c7|t2$|clav|shoulder|sho\d?$|acrom|^[lr]acr$|nose|eyes?$"
+    r"|(^|[lr_. ])ears?$",
+    re.IGNORECASE,
 )
 _LOW = re.compile(r"foot|feet|toe|heel|hee$|ank|mt\d|met\d|calc|malleol|mal$", re.IGNORECASE)
 

@@ -15,6 +15,8 @@ from mocapstudio.formats.c3d_read import read_c3d
 from mocapstudio.formats.c3d_write import write_c3d
 from mocapstudio.formats.options import ReadOptions, WriteOptions
 from mocapstudio.formats.report import ImportReport
+from mocapstudio.formats.table_read import looks_like_csv, looks_like_tsv, read_csv, read_tsv
+from mocapstudio.formats.table_write import write_marker_table, write_table
 from mocapstudio.formats.trc_read import looks_like_trc, read_trc
 from mocapstudio.formats.trc_write import write_trc
 from mocapstudio.motion.declared import Declared
@@ -62,6 +64,22 @@ FORMATS = (
     Format("bvh", (".bvh",), looks_like_bvh, read_bvh, write_bvh),
     Format("amc", (".amc",), looks_like_amc, read_amc),
     Format("trc", (".trc",), looks_like_trc, read_trc, write_markers=write_trc),
+    Format(
+        "csv",
+        (".csv",),
+        looks_like_csv,
+        read_csv,
+        write_table("csv", ","),
+        write_marker_table("csv", ","),
+    ),
+    Format(
+        "tsv",
+        (".tsv",),
+        looks_like_tsv,
+        read_tsv,
+        write_table("tsv", "\t"),
+        write_marker_table("tsv", "\t"),
+    ),
     Format("c3d", (".c3d",), looks_like_c3d, read_c3d, write_markers=write_c3d),
 )
 

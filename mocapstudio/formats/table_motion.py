@@ -229,15 +229,15 @@ def _places(columns: Columns, rows: Rows) -> tuple[Array, Mask, Mask]:
     markers = len(columns.places)
     positions = rows.values[:, -3 * markers :].reshape(-1, markers, 3).copy()
     absent = np.isnan(positions)
-    zeros = (positions == 0).all(axis=2)
-    partial = absent.any(axis=2) & ~absent.all(axis=2)
+    zeros: Mask = np.asarray((positions == 0).all(axis=2))
+    partial: Mask = np.asarray(absent.any(axis=2) & ~absent.all(axis=2))
     positions[zeros | partial] = np.nan
     return positions, zeros, partial
 
 
 def _present(body: _Body) -> tuple[Array, bool]:
     positions, zeros, partial = _places(body.columns, body.rows)
-    blank = np.isnan(positions).all(axis=2) & ~zeros & ~partial
+    blank: Mask = np.isnan(positions).all(axis=2) & ~zeros & ~partial
     for mask, what in (
         (blank, "{} positions are blank"),
         (zeros, "{} positions are exactly 0 0 0"),
@@ -246,11 +246,8 @@ def _present(body: _Body) -> tuple[Array, bool]:
         if mask.any():
             row = int(np.flatnonzero(mask.any(axis=1))[0])
             body.note(row, what.format(int(mask.sum())), "read as missing")
-    unseen = [
-        label
-        for label, never in zip(body.columns.labels, np.isnan(positions).all((0, 2)), strict=True)
-        if never
-    ]
+    never_seen: Mask = np.asarray(np.isnan(positions).all(axis=(0, 2)))
+    unseen = [label for label, never in zip(body.columns.labels, never_seen, strict=True) if never]
     if unseen:
         some = ", ".join(unseen[:_NAMED]) + (" and more" if len(unseen) > _NAMED else "")
         body.note(None, f"{len(unseen)} markers are never seen: {some}", "kept, always missing")

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import math
 
-_NAMES = {
-    "mm": (0.001, "millimeter", "millimetre", "millimeters", "millimetres"),
-    "cm": (0.01, "centimeter", "centimetre", "centimeters", "centimetres"),
-    "dm": (0.1, "decimeter", "decimetre", "decimeters", "decimetres"),
-    "m": (1.0, "meter", "metre", "meters", "metres"),
-    "in": (0.0254, "inch", "inches"),
-    "ft": (0.3048, "foot", "feet"),
-}
-METRES = {short: metres for short, (metres, *_) in _NAMES.items()}
+METRES = {"mm": 0.001, "cm": 0.01, "dm": 0.1, "m": 1.0, "in": 0.0254, "ft": 0.3048}
 """Metres per unit by short name."""
 
-_BY_NAME = {name: METRES[short] for short, (_, *long) in _NAMES.items() for name in (short, *long)}
+_LONG = {
+    "mm": "millimeter millimetre millimeters millimetres",
+    "cm": "centimeter centimetre centimeters centimetres",
+    "dm": "decimeter decimetre decimeters decimetres",
+    "m": "meter metre meters metres",
+    "in": "inch inches",
+    "ft": "foot feet",
+}
+_BY_NAME = {name: METRES[s] for s, long in _LONG.items() for name in (s, *long.split())}
 
 
 def unit_of(text: str) -> float | None:
