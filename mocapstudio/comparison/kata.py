@@ -2,69 +2,169 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Generator, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mocapstudio.comparison import timing
+from mocapstudio.comparison.doubt import doubts
 from mocapstudio.comparison.joint_rows import performance_of_take
+from mocapstudio.comparison.marker_rows import performance_of_markers
+from mocapstudio.comparison.matching import Match, match
 from mocapstudio.comparison.model import Comparison
-from mocapstudio.comparison.parameters import ROOT, ROTATIONS, ComparisonParameters
+from mocapstudio.comparison.normalisation import Poses, normalised
+from mocapstudio.comparison.parameters import ComparisonParameters
 from mocapstudio.comparison.performance import Performance
-from mocapstudio.comparison.resampling import lanczos
-from mocapstudio.motion import rotations as rot
-from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.take import Take
-from mocapstudio.similarity.alignment.dtw import Ends, aligning
+from mocapstudio.similarity.alignment.costs import Costs, PoseDistances, ReliableDistances
+from mocapstudio.similarity.alignment.dtw import Alignment, Ends, aligning
+from mocapstudio.similarity.alignment.frugal import aligning_frugally
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Result = TypeVar("Result")
+
+_MOST_CELLS = 64_000_000
+"""Pairs of frames whose accumulated distances are kept at once: 256 MB."""
 
 
 def compare(
     reference: Take | MarkerTake,
     source: Take | MarkerTake,
     parameters: ComparisonParameters | None = None,
+    *,
+    reference_unreliable: Mask | None = None,
+    source_unreliable: Mask | None = None,
+    names: Mapping[str, str] | None = None,
 ) -> Generator[Progress, None, Comparison]:
-    """Compare a source with a reference, yielding progress."""
+    """Compare a source with a reference as paper 4 does, yielding progress.
+
+    Parameters
+    ----------
+    reference, source
+        Recordings of joints or of markers; their trimmed spans are compared.
+    parameters
+        The defaults where None.
+    reference_unreliable, source_unreliable
+        (frames, joints or markers of the recording): True where it is flagged or otherwise not to
+        be trusted. Such samples count neither for the alignment nor as a difference.
+    names
+        Names of joints in the source and what they are called in the reference.
+
+    Raises
+    ------
+    MocapError
+        If too little of the two bodies can be matched, or nothing of one is ever seen.
+    """
     chosen = parameters or ComparisonParameters()
     yield Progress(0.0, "reading poses")
-    one, other = performance_of_take(_take(reference)), performance_of_take(_take(source))
-    rows = [row for row in one.rows if any(row.name == r.name for r in other.rows)]
-    if not rows:
-        raise MocapError("no joint of the source is one of the reference's")
-    ours = _normalised(one, [one.rows.index(row) for row in rows], chosen)
-    names = [row.name for row in other.rows]
-    theirs = _normalised(other, [names.index(row.name) for row in rows], chosen)
-    frames = _lengths(one, other, chosen)
-    begin, end = (None if e == "closed" else e for e in (chosen.begin, chosen.end))
-    alignment = yield from aligning(
-        _flat(lanczos(ours[slice(*one.span)], frames[0])),
-        _flat(lanczos(theirs[slice(*other.span)], frames[1])),
-        Ends(begin, end),  # type: ignore[arg-type]
+    one = performance_of(reference, reference_unreliable)
+    other = performance_of(source, source_unreliable)
+    matched = match(one, other, names)
+    ours = normalised(one, matched.reference, chosen.features)
+    theirs = normalised(other, matched.source, chosen.features)
+    yield Progress(0.1, "resampling")
+    frames = lengths(one, other, chosen)
+    costs = costs_of(ours.resampled(one.span, frames[0]), theirs.resampled(other.span, frames[1]))
+    alignment = yield from _scaled(_aligning(costs, chosen), 0.2, 0.8)
+    yield Progress(0.8, "weighing doubts")
+    warnings = (*one.warnings, *other.warnings, *matched.warnings)
+    warnings += doubts(costs, alignment, _seconds(one), _seconds(other))
+    return _comparison(
+        _Pair(one, other, matched, ours, theirs), alignment, frames, chosen, warnings
     )
-    at = [
-        np.linspace(p.span[0], p.span[1] - 1, n) for p, n in zip((one, other), frames, strict=True)
-    ]
-    path = timing.at_own_rates(alignment.path, *at)
-    warp = timing.warping_function(path, other.frames, rounded=chosen.rounded)
+
+
+def performance_of(recording: Take | MarkerTake, unreliable: Mask | None = None) -> Performance:
+    """Describe a recording of joints or of markers as a comparison needs it."""
+    if isinstance(recording, MarkerTake):
+        return performance_of_markers(recording, unreliable)
+    return performance_of_take(recording, unreliable)
+
+
+def lengths(one: Performance, other: Performance, chosen: ComparisonParameters) -> tuple[int, int]:
+    """Frames to which both are resampled: equal, or at true speed of equal rate.
+
+    The rate is the own one, or every second, third … frame of it, and at least the wanted one;
+    equal lengths are those of the longer.
+    """
+    rates = [_reduced(p.rate, chosen.rate) for p in (one, other)]
+    if chosen.true_speed:
+        rate = max(rates)
+        first, second = (max(2, ceil(_seconds(p) * rate - 1e-6) + 1) for p in (one, other))
+        return first, second
+    longest = max(round(_seconds(p) * r) + 1 for p, r in zip((one, other), rates, strict=True))
+    return max(2, longest), max(2, longest)
+
+
+def costs_of(ours: Poses, theirs: Poses) -> Costs:
+    """Return what pairs of frames cost, by the rows that are reliable."""
+    one, other = ours.points.astype(np.float32), theirs.points.astype(np.float32)
+    if ours.reliable and theirs.reliable:
+        return PoseDistances(one.reshape(len(one), -1), other.reshape(len(other), -1))
+    return ReliableDistances(one, other, ours.weight, theirs.weight)
+
+
+def _aligning(costs: Costs, chosen: ComparisonParameters) -> Generator[Progress, None, Alignment]:
+    ends = Ends(chosen.open_begin, chosen.open_end)
+    if costs.shape[0] * costs.shape[1] > _MOST_CELLS:
+        return (yield from aligning_frugally(costs, ends))
+    return (yield from aligning(costs, ends))
+
+
+def _scaled(
+    work: Generator[Progress, None, Result], start: float, end: float
+) -> Generator[Progress, None, Result]:
+    """Go on with work that is the part from `start` to `end` of the whole."""
+    while True:
+        try:
+            progress = next(work)
+        except StopIteration as stop:
+            result: Result = stop.value
+            return result
+        yield Progress(start + (end - start) * progress.done, progress.what)
+
+
+@dataclass(frozen=True, eq=False)
+class _Pair:
+    """Two performances and their poses at their own rates."""
+
+    one: Performance
+    other: Performance
+    matched: Match
+    ours: Poses
+    theirs: Poses
+
+
+def _comparison(
+    pair: _Pair,
+    alignment: Alignment,
+    frames: tuple[int, int],
+    chosen: ComparisonParameters,
+    warnings: tuple[str, ...],
+) -> Comparison:
+    one, other, ours, theirs = pair.one, pair.other, pair.ours, pair.theirs
+    path = timing.at_own_rates(
+        alignment.path,
+        np.linspace(one.span[0], one.span[1] - 1, frames[0]),
+        np.linspace(other.span[0], other.span[1] - 1, frames[1]),
+    )
     rates = float(one.rate), float(other.rate)
     begins = float(one.span[0]), float(other.span[0])
-    gap = timing.misalignment(warp, rates, 1.0, begins)
-    tempo = _seconds(one) / _seconds(other)
-    relative = timing.misalignment(warp, rates, tempo, begins)
+    matched = timing.warping_function(path, other.frames, rounded=chosen.rounded)
+    gap = timing.misalignment(matched, rates, 1.0, begins)
+    relative = timing.misalignment(matched, rates, _seconds(one) / _seconds(other), begins)
+    warp = timing.warp_of(gap, rates, begins, one.frames)
+    difference, total = _differences(ours, theirs, warp)
     shown = gap if chosen.true_speed else relative
-    full = np.clip(
-        (gap + (np.arange(other.frames) - begins[1]) / rates[1]) * rates[0] + begins[0],
-        0,
-        one.frames - 1,
-    )
-    matched = _sampled(ours, full)
-    difference = np.linalg.norm(theirs - matched, axis=2)
+    rows = [one.rows[i] for i in pair.matched.reference]
     return Comparison(
         reference=one.name,
         source=other.name,
@@ -72,45 +172,31 @@ def compare(
         source_rate=other.rate,
         rows=tuple(row.name for row in rows),
         limbs=tuple(row.limb for row in rows),
-        reference_poses=ours.astype(np.float32),
-        source_poses=theirs.astype(np.float32),
+        reference_poses=ours.shown.astype(np.float32),
+        source_poses=theirs.shown.astype(np.float32),
         path=path,
-        warp=full,
+        warp=warp,
         misalignment=gap,
         misalignment_relative=relative,
         timing=timing.slopes(shown, rates[1], chosen.window, chosen.tolerance),
-        joint_difference=difference.astype(np.float32),
-        pose_difference=np.linalg.norm(difference, axis=1).astype(np.float32),
+        joint_difference=difference,
+        pose_difference=total,
         dissimilarity=alignment.mean_cost,
-        warnings=one.warnings,
+        warnings=warnings,
     )
 
 
-def _take(recording: Take | MarkerTake) -> Take:
-    if not isinstance(recording, Take):
-        raise MocapError("markers cannot be compared yet")
-    return recording
-
-
-def _normalised(performance: Performance, rows: list[int], chosen: ComparisonParameters) -> Array:
-    if chosen.features == ROTATIONS:
-        assert performance.rotations is not None
-        return rot.to_rotation_vector(performance.rotations[:, rows]) / (2 * np.pi) + 0.5
-    frame = performance.root if chosen.features == ROOT else performance.head
-    local = frame.local(performance.positions[:, rows])
-    start, end = performance.span
-    return local * (0.5 / np.abs(local[start:end]).max()) + 0.5
-
-
-def _lengths(one: Performance, other: Performance, chosen: ComparisonParameters) -> tuple[int, int]:
-    """Frames at which both are aligned: own frames, or every second, third … of them."""
-    rates = [_reduced(p.rate, chosen.rate) for p in (one, other)]
-    if chosen.true_speed:
-        return tuple(max(2, ceil(_seconds(p) * rates[0]) + 1) for p in (one, other))  # type: ignore
-    longest = max(
-        max(2, round(_seconds(p) * r) + 1) for p, r in zip((one, other), rates, strict=True)
-    )
-    return longest, longest
+def _differences(
+    ours: Poses, theirs: Poses, warp: Array
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Distance of each row (S, N), and of whole poses (S,), from the matched reference pose."""
+    points, weight = ours.at(warp)
+    weight = weight * theirs.weight
+    rows = np.linalg.norm(theirs.points - points, axis=2) * weight
+    known = weight.sum(axis=1)
+    scale = np.where(known > 0, weight.shape[1] / np.maximum(known, 1.0), 0.0)
+    total = np.sqrt(np.sum(rows**2, axis=1) * scale)
+    return rows.astype(np.float32), total.astype(np.float32)
 
 
 def _reduced(rate: Fraction, least: float) -> float:
@@ -120,14 +206,3 @@ def _reduced(rate: Fraction, least: float) -> float:
 def _seconds(performance: Performance) -> float:
     start, end = performance.span
     return max(end - start - 1, 1) / float(performance.rate)
-
-
-def _flat(poses: Array) -> NDArray[np.float32]:
-    return poses.reshape(len(poses), -1).astype(np.float32)
-
-
-def _sampled(poses: Array, at: Array) -> Array:
-    low = np.minimum(at.astype(np.int64), max(len(poses) - 2, 0))
-    high = np.minimum(low + 1, len(poses) - 1)
-    part = (at - low)[:, None, None]
-    return poses[low] * (1 - part) + poses[high] * part

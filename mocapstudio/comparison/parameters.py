@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 from mocapstudio.motion.errors import ParameterError
 
@@ -11,7 +12,12 @@ ROOT = "root"
 ROTATIONS = "rotations"
 FEATURES = (BOX, ROOT, ROTATIONS)
 
-ENDS = ("closed", "reference", "source")
+CLOSED = "closed"
+REFERENCE = "reference"
+SOURCE = "source"
+ENDS = (CLOSED, REFERENCE, SOURCE)
+
+Side = Literal["reference", "source"]
 
 
 @dataclass(frozen=True)
@@ -48,8 +54,8 @@ class ComparisonParameters:
     rate: float = 25.0
     tolerance: float = 0.1
     window: float = 0.5
-    begin: str = "closed"
-    end: str = "closed"
+    begin: str = CLOSED
+    end: str = CLOSED
     rounded: bool = False
 
     def __post_init__(self) -> None:
@@ -61,3 +67,17 @@ class ComparisonParameters:
         for name, low, high in (("rate", 5, 240), ("tolerance", 0, 10), ("window", 0.02, 10)):
             if not low <= getattr(self, name) <= high:
                 raise ParameterError(f"{name} must lie in {low}..{high}")
+
+    @property
+    def open_begin(self) -> Side | None:
+        """The side of which frames may be left out at the beginning, if any."""
+        return _side(self.begin)
+
+    @property
+    def open_end(self) -> Side | None:
+        """The side of which frames may be left out at the end, if any."""
+        return _side(self.end)
+
+
+def _side(choice: str) -> Side | None:
+    return "reference" if choice == REFERENCE else "source" if choice == SOURCE else None

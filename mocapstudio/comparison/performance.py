@@ -48,7 +48,8 @@ class BodyFrame:
 
     def local(self, positions: Array) -> Array:
         """(F, N, 3) metres in this frame, of positions in the world."""
-        return np.einsum("fij,fnj->fni", self.axes, positions - self.origin[:, None])
+        away = positions - self.origin[:, None]
+        return np.asarray(np.einsum("fij,fnj->fni", self.axes, away))
 
 
 @dataclass(frozen=True, eq=False)

@@ -32,7 +32,8 @@ def at_own_rates(path: Path, reference: Array, source: Array) -> Path:
     share = (np.arange(len(legs)) - np.repeat(np.cumsum(steps) - steps, steps)) / steps[legs]
     line = corners[legs] + share[:, None] * (corners[legs + 1] - corners[legs])
     pairs = np.round(np.vstack([line, corners[-1:]]) - 1e-9).astype(np.int32)
-    return pairs[np.concatenate([[True], np.any(np.diff(pairs, axis=0), axis=1)])]
+    moves = np.any(np.diff(pairs, axis=0), axis=1)
+    return np.asarray(pairs[np.concatenate([[True], moves])])
 
 
 def warping_function(path: Path, frames: int, *, rounded: bool = False) -> Array:
@@ -66,6 +67,14 @@ def misalignment(
     gap = (warp - begin[0]) / rates[0] - own
     known = np.flatnonzero(~np.isnan(gap))
     return np.asarray(gap[known[_nearest(known, len(gap))]])
+
+
+def warp_of(
+    gap: Array, rates: tuple[float, float], begin: tuple[float, float], frames: int
+) -> Array:
+    """F for every source frame from G at true speed, kept within the reference's frames."""
+    seconds = (np.arange(len(gap)) - begin[1]) / rates[1] + gap
+    return np.clip(seconds * rates[0] + begin[0], 0, frames - 1)
 
 
 def slopes(gap: Array, rate: float, window: float, tolerance: float) -> NDArray[np.int8]:

@@ -11,27 +11,25 @@ from numpy.typing import NDArray
 
 from mocapstudio.motion.errors import ParameterError
 from mocapstudio.motion.progress import Progress, run
-from mocapstudio.similarity import parallel
 from mocapstudio.similarity.alignment import kernels
+from mocapstudio.similarity.alignment.costs import Costs, PoseDistances
 
 F32 = NDArray[np.float32]
+Path = NDArray[np.int32]
 
 Side = Literal["reference", "source"]
-SIDES: tuple[Side, ...] = ("reference", "source")
 
-_LANES = 4
 _BLOCK = 512
-_AT_LEAST = 64
 
 
 @dataclass(frozen=True)
 class Ends:
-    """Which of the two may begin late or end early.
+    """Which of the two may begin late or end early; the other is aligned as a whole.
 
     Parameters
     ----------
     begin
-        The side of which frames may be skipped before the first pair; None for neither.
+        The side of which frames may be left out before the first pair; None for neither.
     end
         The same after the last pair.
     """
@@ -39,8 +37,15 @@ class Ends:
     begin: Side | None = None
     end: Side | None = None
 
+    @property
+    def free(self) -> tuple[bool, bool]:
+        """Whether the path may begin at any reference frame, at any source frame."""
+        return self.begin == "reference", self.begin == "source"
+
 
 CLOSED = Ends()
+WITHIN_SOURCE = Ends("source", "source")
+"""Subsequence alignment: the whole reference somewhere in the source."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,98 +57,107 @@ class Alignment:
     path
         (P, 2) pairs of reference and source frames; ascending, in steps of (1, 1), (1, 0), (0, 1).
     costs
-        (P,) distance of each pair.
+        (P,) cost of each pair.
     """
 
-    path: NDArray[np.int32]
+    path: Path
     costs: F32
 
     @property
     def cost(self) -> float:
-        """Accumulated distance."""
+        """Accumulated cost."""
         return float(np.sum(self.costs, dtype=np.float64))
 
     @property
     def mean_cost(self) -> float:
-        """Mean distance of a pair."""
+        """Mean cost of a pair."""
         return self.cost / len(self.path)
 
 
-def align(reference: F32, source: F32, ends: Ends = CLOSED) -> Alignment:
-    """Find the cheapest path between two sequences of poses; memory grows with R x S.
-
-    Parameters
-    ----------
-    reference, source
-        (R, D) and (S, D): poses as points; the cost of a pair is their Euclidean distance.
-    ends
-        Which side may be skipped at the beginning and at the end.
-
-    Raises
-    ------
-    ParameterError
-        If a sequence is empty, or the poses differ in dimension.
-    """
-    return run(aligning(reference, source, ends))
+def align(costs: Costs, ends: Ends = CLOSED) -> Alignment:
+    """Find the cheapest path; memory grows with the product of the lengths."""
+    return run(aligning(costs, ends))
 
 
-def aligning(
-    reference: F32, source: F32, ends: Ends = CLOSED
-) -> Generator[Progress, None, Alignment]:
+def aligning(costs: Costs, ends: Ends = CLOSED) -> Generator[Progress, None, Alignment]:
     """Do as `align` and yield progress."""
-    accumulated = yield from accumulating(reference, source, ends)
+    accumulated = yield from accumulating(costs, ends)
     path = traced(accumulated, ends)
-    gaps = reference[path[:, 0]].astype(np.float32) - source[path[:, 1]].astype(np.float32)
-    return Alignment(path, np.linalg.norm(gaps, axis=1))
+    return Alignment(path, costs.pairs(path))
 
 
-def accumulating(
-    reference: F32, source: F32, ends: Ends = CLOSED
-) -> Generator[Progress, None, F32]:
+def accumulating(costs: Costs, ends: Ends = CLOSED) -> Generator[Progress, None, F32]:
     """Compute the accumulated distance matrix M (R, S) of algorithm 1, yielding progress."""
-    rows, columns = lanes(reference), np.ascontiguousarray(lanes(source).T)
-    if rows.shape[1] != columns.shape[0]:
-        raise ParameterError("poses of different dimension cannot be aligned")
-    if not len(rows) or not columns.shape[1]:
-        raise ParameterError("an empty sequence cannot be aligned")
-    m = np.empty((len(rows), columns.shape[1]), np.float32)
-    edge = 0.0 if ends.begin == "reference" else np.inf
-    above = np.full(m.shape[1], 0.0 if ends.begin == "source" else np.inf, np.float32)
-    corner = 0.0
+    m = np.empty(costs.shape, np.float32)
+    corner, above, edge = borders(costs.shape[1], ends)
     for start in range(0, len(m), _BLOCK):
         yield Progress(start / len(m), "aligning")
         block = m[start : start + _BLOCK]
-        fill_distances(rows[start : start + _BLOCK], columns, block)
+        costs.fill(start, start + len(block), block)
         kernels.accumulate(block, above, corner, edge)
         above, corner = block[-1], edge
     return m
 
 
-def traced(accumulated: F32, ends: Ends = CLOSED) -> NDArray[np.int32]:
-    """(P, 2) cheapest path through an accumulated distance matrix (R, S)."""
-    last = accumulated.shape[0] - 1, accumulated.shape[1] - 1
+def borders(columns: int, ends: Ends) -> tuple[float, F32, float]:
+    """Return what stands around an accumulated matrix: corner, (columns,) row above, column left.
+
+    Nothing where a path may begin, infinity where it may not.
+    """
+    rows_free, columns_free = ends.free
+    above = np.full(columns, 0.0 if columns_free else np.inf, np.float32)
+    return 0.0, above, 0.0 if rows_free else np.inf
+
+
+def last_cell(last_row: F32, last_column: F32, ends: Ends) -> tuple[int, int]:
+    """Return the cell where the cheapest path ends, from the last row and column of M."""
+    row, column = len(last_column) - 1, len(last_row) - 1
     if ends.end == "reference":
-        last = int(np.argmin(accumulated[:, -1])), last[1]
-    elif ends.end == "source":
-        last = last[0], int(np.argmin(accumulated[-1]))
+        return int(np.argmin(last_column)), column
+    return row, int(np.argmin(last_row)) if ends.end == "source" else column
+
+
+def traced(accumulated: F32, ends: Ends = CLOSED) -> Path:
+    """(P, 2) cheapest path through an accumulated distance matrix (R, S)."""
+    end = last_cell(accumulated[-1], accumulated[:, -1], ends)
     path = np.empty((sum(accumulated.shape), 2), np.int32)
-    first = kernels.backtrack(
-        accumulated, *last, ends.begin == "reference", ends.begin == "source", path
-    )
+    first = kernels.backtrack(accumulated, *end, *ends.free, path)
     return path[first:].copy()
 
 
-def fill_distances(reference: F32, source: F32, out: F32) -> None:
-    """Compute distances (n, S) of poses (n, D) and (D, S), several blocks of rows at once."""
+def align_in_band(costs: PoseDistances, band: int, ends: Ends = CLOSED) -> Alignment:
+    """Find the cheapest path that keeps to a Sakoe-Chiba band; memory grows with R x band.
 
-    def work(start: int, end: int) -> None:
-        kernels.distances(reference[start:end], source, out[start:end])
+    Parameters
+    ----------
+    band
+        Source frames that the path may be off the straight line from the first pair to the last;
+        at least as many as one reference frame corresponds to.
 
-    parallel.for_blocks(len(reference), work, _AT_LEAST)
+    Raises
+    ------
+    ParameterError
+        If the band is negative, or no path keeps to it.
+    """
+    if band < 0:
+        raise ParameterError(f"a band must not be negative, as {band} is")
+    rows, columns = costs.shape
+    slope = (columns - 1) / max(rows - 1, 1)
+    half = max(band, int(np.ceil(slope)))
+    low = np.round(np.arange(rows) * slope).astype(np.int32) - np.int32(half)
+    m = np.empty((rows, 2 * half + 1), np.float32)
+    costs.fill_within(low, m)
+    kernels.accumulate_within(m, low, *ends.free)
+    right = np.array([_cell(m, low, i, columns - 1) for i in range(rows)], np.float32)
+    bottom = np.array([_cell(m, low, rows - 1, j) for j in range(columns)], np.float32)
+    end = last_cell(bottom, right, ends)
+    if not np.isfinite(_cell(m, low, *end)):
+        raise ParameterError(f"no path keeps to a band of {band} frames")
+    path = np.empty((rows + columns, 2), np.int32)
+    first = kernels.backtrack_within(m, low, *end, *ends.free, path)
+    return Alignment(path[first:].copy(), costs.pairs(path[first:]))
 
 
-def lanes(poses: F32) -> F32:
-    """Pad poses (F, D) with zeros to the multiple of dimensions that the kernels take."""
-    poses = np.asarray(poses, np.float32)
-    more = -poses.shape[1] % _LANES
-    return np.ascontiguousarray(np.pad(poses, ((0, 0), (0, more))) if more else poses)
+def _cell(m: F32, low: Path, i: int, j: int) -> float:
+    k = j - int(low[i])
+    return float(m[i, k]) if 0 <= k < m.shape[1] else np.inf

@@ -21,37 +21,85 @@ _INF = np.float32(np.inf)
 
 @nb.njit(nogil=True, cache=True, fastmath=True)
 def distances(reference: F32, source: F32, out: F32) -> None:
-    """Euclidean distances between poses.
+    """Euclidean distances between poses, four reference frames at a time.
 
-    Differences are squared as they are: ``|x|^2 + |y|^2 - 2 x.y`` would be no faster here, and
-    does not give 0 for equal poses in float32.
+    Differences are squared as they are: ``|x|^2 + |y|^2 - 2 x.y`` does not give 0 for equal poses
+    in float32.
 
     Parameters
     ----------
     reference
-        (R, D); D a multiple of 4.
+        (R, D); D even.
     source
         (D, S).
     out
         (R, S), overwritten.
     """
-    dims, frames = source.shape
-    total = np.empty(_CHUNK, np.float32)
-    for i in range(reference.shape[0]):
-        for start in range(0, frames, _CHUNK):
-            width = min(_CHUNK, frames - start)
-            total[:] = _ZERO
-            for d in range(0, dims, 4):
-                a, b = reference[i, d], reference[i, d + 1]
-                c, e = reference[i, d + 2], reference[i, d + 3]
+    rows, dims, frames = reference.shape[0], source.shape[0], source.shape[1]
+    t0, t1 = np.empty(_CHUNK, np.float32), np.empty(_CHUNK, np.float32)
+    t2, t3 = np.empty(_CHUNK, np.float32), np.empty(_CHUNK, np.float32)
+    for start in range(0, frames, _CHUNK):
+        width = min(_CHUNK, frames - start)
+        for i in range(0, rows, _ROWS):
+            i1, i2, i3 = min(i + 1, rows - 1), min(i + 2, rows - 1), min(i + 3, rows - 1)
+            t0[:], t1[:], t2[:], t3[:] = _ZERO, _ZERO, _ZERO, _ZERO
+            for d in range(0, dims, 2):
+                a0, a1, a2, a3 = (
+                    reference[i, d],
+                    reference[i1, d],
+                    reference[i2, d],
+                    reference[i3, d],
+                )
+                b0, b1, b2, b3 = (
+                    reference[i, d + 1],
+                    reference[i1, d + 1],
+                    reference[i2, d + 1],
+                    reference[i3, d + 1],
+                )
                 ya, yb = source[d, start:], source[d + 1, start:]
-                yc, ye = source[d + 2, start:], source[d + 3, start:]
                 for j in range(width):
-                    da, db, dc, de = a - ya[j], b - yb[j], c - yc[j], e - ye[j]
-                    total[j] += (da * da + db * db) + (dc * dc + de * de)
-            row = out[i, start:]
+                    p, q = ya[j], yb[j]
+                    t0[j] += (a0 - p) * (a0 - p) + (b0 - q) * (b0 - q)
+                    t1[j] += (a1 - p) * (a1 - p) + (b1 - q) * (b1 - q)
+                    t2[j] += (a2 - p) * (a2 - p) + (b2 - q) * (b2 - q)
+                    t3[j] += (a3 - p) * (a3 - p) + (b3 - q) * (b3 - q)
             for j in range(width):
-                row[j] = np.sqrt(total[j])
+                out[i, start + j] = np.sqrt(t0[j])
+                out[i1, start + j] = np.sqrt(t1[j])
+                out[i2, start + j] = np.sqrt(t2[j])
+                out[i3, start + j] = np.sqrt(t3[j])
+
+
+@nb.njit(nogil=True, cache=True, fastmath=True)
+def distances_within(reference: F32, source: F32, low: I32, out: F32) -> None:
+    """Euclidean distances between poses inside a band.
+
+    Parameters
+    ----------
+    reference
+        (R, D).
+    source
+        (D, S).
+    low
+        (R,) first source frame of each row of the band; may be negative.
+    out
+        (R, W), overwritten: columns are source frames from ``low`` on, infinite outside 0..S.
+    """
+    dims, frames = source.shape
+    for i in range(reference.shape[0]):
+        row, first = out[i], max(low[i], 0)
+        row[:] = _INF
+        width = min(frames, low[i] + row.shape[0]) - first
+        if width <= 0:
+            continue
+        inside = row[first - low[i] :]
+        inside[:width] = _ZERO
+        for d in range(dims):
+            a, y = reference[i, d], source[d, first:]
+            for j in range(width):
+                inside[j] += (a - y[j]) * (a - y[j])
+        for j in range(width):
+            inside[j] = np.sqrt(inside[j])
 
 
 @nb.njit(nogil=True, cache=True)
@@ -76,7 +124,6 @@ def _four_rows(m: F32, i: int, above: F32, corner: np.float32, edge: np.float32)
     a1 = b1 = c1 = edge
     d0 = corner
     for s in range(3):
-        e = e
         if s >= 2:
             new = r2[s - 2] + min(c, min(b1, b))
             c1, c = c, new
@@ -146,6 +193,37 @@ def accumulate(m: F32, above: F32, corner: float, edge: float) -> None:
 
 
 @nb.njit(nogil=True, cache=True)
+def accumulate_within(m: F32, low: I32, open_rows: bool, open_columns: bool) -> None:
+    """Turn the distances of a band into accumulated distances, in place.
+
+    Parameters
+    ----------
+    m
+        (R, W) as `distances_within` fills it.
+    low
+        (R,) ascending.
+    open_rows, open_columns
+        Whether the path may begin at any row of the first column, or any column of the first row.
+    """
+    rows, width = m.shape
+    for i in range(rows):
+        shift = low[i] - low[i - 1] if i > 0 else 0
+        left = _INF
+        for k in range(width):
+            j = low[i] + k
+            best = left
+            if i > 0:
+                if k + shift < width:
+                    best = min(best, m[i - 1, k + shift])
+                if 0 < k + shift <= width:
+                    best = min(best, m[i - 1, k + shift - 1])
+            if (i == 0 and (j == 0 or open_columns)) or (j == 0 and open_rows):
+                best = _ZERO
+            left = m[i, k] + best
+            m[i, k] = left
+
+
+@nb.njit(nogil=True, cache=True)
 def backtrack(m: F32, i: int, j: int, open_rows: bool, open_columns: bool, path: I32) -> int:
     """Walk the cheapest path back from cell (i, j); a diagonal step wins a tie.
 
@@ -162,12 +240,26 @@ def backtrack(m: F32, i: int, j: int, open_rows: bool, open_columns: bool, path:
     -------
     The index in `path` of the path's first pair.
     """
-    at = path.shape[0] - 1
+    low = np.zeros(m.shape[0], np.int32)
+    first: int = backtrack_within(m, low, i, j, open_rows, open_columns, path)
+    return first
+
+
+@nb.njit(nogil=True, cache=True)
+def backtrack_within(
+    m: F32, low: I32, i: int, j: int, open_rows: bool, open_columns: bool, path: I32
+) -> int:
+    """Do as `backtrack` in a band (R, W) whose rows begin at the source frames `low`."""
+    width, at = m.shape[1], path.shape[0] - 1
     path[at, 0], path[at, 1] = i, j
     while not ((i == 0 and (j == 0 or open_columns)) or (j == 0 and open_rows)):
-        diagonal = m[i - 1, j - 1] if i > 0 and j > 0 else _INF
-        up = m[i - 1, j] if i > 0 else _INF
-        left = m[i, j - 1] if j > 0 else _INF
+        diagonal, up, left = _INF, _INF, _INF
+        if i > 0:
+            k = j - low[i - 1]
+            up = m[i - 1, k] if 0 <= k < width else _INF
+            diagonal = m[i - 1, k - 1] if 0 < k <= width and j > 0 else _INF
+        if j > 0 and j > low[i]:
+            left = m[i, j - 1 - low[i]]
         if diagonal <= up and diagonal <= left:
             i, j = i - 1, j - 1
         elif up <= left:

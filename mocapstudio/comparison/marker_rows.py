@@ -1,0 +1,140 @@
+"""Performances of markers: rows, roles and body frames told by the labels (paper 4)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapstudio.comparison import marker_names
+from mocapstudio.comparison.performance import BodyFrame, Performance, Row, frame_along
+from mocapstudio.motion.errors import MocapError
+from mocapstudio.motion.markers import MarkerTake
+
+Array = NDArray[np.float64]
+
+_NECK = (("nck",), ("clav",), ("neck",), ("lcla", "rcla"))
+_BACK_OF_HEAD = (("bkhd",), ("lbhd", "rbhd"), ("lbhead", "rbhead"), ("head",), ("lfhd", "rfhd"))
+_C7 = (("c7",), ("t1",), ("t2",), ("t10",))
+_LEFT_HIP = (("lfhp", "lbhp"), ("lasi", "lpsi"), ("lfwt", "lbwt"), ("lasis", "lpsis"), ("lasi",))
+_RIGHT_HIP = (("rfhp", "rbhp"), ("rasi", "rpsi"), ("rfwt", "rbwt"), ("rasis", "rpsis"), ("rasi",))
+_LEFT_SHOULDER = (("lshd",), ("lsho",), ("lacr",), ("lshoulder",))
+_RIGHT_SHOULDER = (("rshd",), ("rsho",), ("racr",), ("rshoulder",))
+_HIP_JOINTS = ((("lhip",), ("lhjc",)), (("rhip",), ("rhjc",)))
+
+_TRUSTED_GAP = 0.5
+"""Seconds: positions completed in longer gaps are not held against the performer."""
+
+
+def performance_of_markers(
+    take: MarkerTake, unreliable: NDArray[np.bool_] | None = None
+) -> Performance:
+    """Describe a take of markers; `unreliable` is (F, M), True where a marker should not count.
+
+    Raises
+    ------
+    MocapError
+        If no marker is ever seen.
+    """
+    seen = [i for i in range(len(take.labels)) if not take.missing[:, i].all()]
+    if not seen:
+        raise MocapError(f"{take.name}: no marker is ever seen")
+    warnings = []
+    if len(seen) < len(take.labels):
+        never = [take.labels[i] for i in range(len(take.labels)) if i not in seen]
+        warnings.append(f"never seen: {_listing(never)}")
+    roles = marker_names.marker_roles(take.labels)
+    limbs = [marker_names.limb_of(label) for label in take.labels]
+    order = sorted(seen, key=lambda i: marker_names.LIMBS.index(limbs[i]))
+    positions, doubtful = completed(take)
+    if doubtful[:, order].any():
+        share = float(doubtful[:, order].mean())
+        warnings.append(f"{share:.1%} of the positions lie in long gaps and do not count")
+    if unreliable is not None:
+        doubtful = doubtful | unreliable
+    root, said = _root_frame(take.labels, positions, order)
+    head = _head_frame(take.labels, positions, seen)
+    if head is None:
+        said = (*said, "no markers of neck, C7 and head: compared in the frame of the hips")
+    return Performance(
+        name=take.name,
+        rate=take.rate,
+        span=take.span,
+        rows=tuple(Row(take.labels[i], limbs[i], roles.get(i, "")) for i in order),
+        positions=positions[:, order],
+        rotations=None,
+        head=head or root,
+        root=root,
+        unreliable=doubtful[:, order],
+        warnings=(*warnings, *said),
+    )
+
+
+def completed(take: MarkerTake) -> tuple[Array, NDArray[np.bool_]]:
+    """Fill gaps in time, and tell which positions lie in gaps too long to be trusted.
+
+    Returns
+    -------
+    positions
+        (F, M, 3) metres; markers that are never seen stay NaN.
+    doubtful
+        (F, M).
+    """
+    positions, doubtful = take.positions.copy(), np.zeros(take.missing.shape, bool)
+    longest = _TRUSTED_GAP * float(take.rate)
+    frames = np.arange(take.frames)
+    for i in range(len(take.labels)):
+        gone = take.missing[:, i]
+        known = np.flatnonzero(~gone)
+        if not gone.any() or not len(known):
+            continue
+        for axis in range(3):
+            positions[gone, i, axis] = np.interp(frames[gone], known, positions[known, i, axis])
+        edges = np.concatenate([[-1], known, [take.frames]])
+        length = np.diff(edges)[np.searchsorted(edges, frames) - 1]
+        doubtful[:, i] = gone & (length - 1 > longest)
+    return positions, doubtful
+
+
+def _head_frame(labels: tuple[str, ...], positions: Array, seen: list[int]) -> BodyFrame | None:
+    """NCK at the origin, NCK-BKHD along z, NCK-C7-BKHD in the yz plane (paper 4)."""
+    there = [labels[i] if i in seen else "" for i in range(len(labels))]
+    neck, back, c7 = (marker_names.find(there, *names) for names in (_NECK, _BACK_OF_HEAD, _C7))
+    if not (neck and back and c7) or set(neck) & set(c7):
+        return None
+    origin = positions[:, neck].mean(axis=1)
+    along = positions[:, back].mean(axis=1) - origin
+    return frame_along(origin, along, positions[:, c7].mean(axis=1) - origin)
+
+
+def _root_frame(
+    labels: tuple[str, ...], positions: Array, seen: list[int]
+) -> tuple[BodyFrame, tuple[str, ...]]:
+    """Middle of the pelvis, world's up, and heading from right to left hip (or shoulder)."""
+    there = [labels[i] if i in seen else "" for i in range(len(labels))]
+    sides = (
+        (_LEFT_HIP, _RIGHT_HIP),
+        _HIP_JOINTS,
+        (_LEFT_SHOULDER, _RIGHT_SHOULDER),
+    )
+    for left_names, right_names in sides:
+        left, right = (marker_names.find(there, *names) for names in (left_names, right_names))
+        if left and right:
+            one, other = positions[:, left].mean(axis=1), positions[:, right].mean(axis=1)
+            level = (one - other) * [1.0, 0.0, 1.0]
+            up = np.broadcast_to([0.0, 1.0, 0.0], level.shape)
+            frame = frame_along((one + other) / 2, up, np.cross(level, up))
+            return _turned(frame), ()
+    middle = positions[:, seen].mean(axis=1)
+    still = BodyFrame(middle, np.broadcast_to(np.eye(3), (len(middle), 3, 3)))
+    return still, ("no markers of hips or shoulders: the direction the body faces stays in",)
+
+
+def _turned(frame: BodyFrame) -> BodyFrame:
+    """Name the axes as the body frame does: x left, y up, z forward."""
+    x, forward, up = np.moveaxis(frame.axes, 1, 0)
+    return BodyFrame(frame.origin, np.stack([-x, up, forward], axis=1))
+
+
+def _listing(names: list[str], most: int = 6) -> str:
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return ", ".join(names[:most]) + more

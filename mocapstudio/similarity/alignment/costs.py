@@ -1,0 +1,172 @@
+"""What a pair of frames costs: distances between poses, whole or with parts left out."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapstudio.motion.errors import ParameterError
+from mocapstudio.similarity import parallel
+from mocapstudio.similarity.alignment import kernels
+
+F32 = NDArray[np.float32]
+
+_AT_LEAST = 64
+
+
+class Costs(Protocol):
+    """The cost of every pair of a reference frame and a source frame, computed when asked for."""
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Frames of the reference and of the source."""
+
+    def fill(self, start: int, end: int, out: F32) -> None:
+        """Write the costs of reference frames [start, end) with all source frames into `out`."""
+
+    def pairs(self, path: NDArray[np.int32]) -> F32:
+        """(P,) costs of the pairs of a path (P, 2)."""
+
+    def part(self, rows: slice, columns: slice) -> Costs:
+        """Return the costs of some frames; a step of -1 turns time round."""
+
+
+class PoseDistances:
+    """Euclidean distances between poses as points (paper 4).
+
+    Parameters
+    ----------
+    reference, source
+        (R, D) and (S, D).
+
+    Raises
+    ------
+    ParameterError
+        If a sequence is empty, or the poses differ in dimension.
+    """
+
+    def __init__(self, reference: F32, source: F32) -> None:
+        _check(reference, source)
+        self.reference, self.source = _even(reference), _even(source)
+        self._columns = np.ascontiguousarray(self.source.T)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Frames of the reference and of the source."""
+        return len(self.reference), len(self.source)
+
+    def fill(self, start: int, end: int, out: F32) -> None:
+        """Write the costs of reference frames [start, end) into `out` (end - start, S)."""
+        rows = self.reference[start:end]
+
+        def work(first: int, last: int) -> None:
+            kernels.distances(rows[first:last], self._columns, out[first:last])
+
+        parallel.for_blocks(len(rows), work, _AT_LEAST)
+
+    def fill_within(self, low: NDArray[np.int32], out: F32) -> None:
+        """Write the costs of a band (R, W) whose rows begin at the source frames `low` (R,)."""
+
+        def work(first: int, last: int) -> None:
+            rows = slice(first, last)
+            kernels.distances_within(self.reference[rows], self._columns, low[rows], out[rows])
+
+        parallel.for_blocks(len(self.reference), work, _AT_LEAST)
+
+    def pairs(self, path: NDArray[np.int32]) -> F32:
+        """(P,) costs of the pairs of a path (P, 2)."""
+        gaps = self.reference[path[:, 0]] - self.source[path[:, 1]]
+        return np.asarray(np.linalg.norm(gaps, axis=1), np.float32)
+
+    def part(self, rows: slice, columns: slice) -> PoseDistances:
+        """Return the costs of some frames; a step of -1 turns time round."""
+        return PoseDistances(self.reference[rows], self.source[columns])
+
+
+class ReliableDistances:
+    """Distances over the rows that are reliable in both frames, scaled to all rows.
+
+    With the squared gaps of n of N rows known, the square of the distance is their sum times
+    N / n; pairs that share no reliable row cost what pairs cost in the mean.
+
+    Parameters
+    ----------
+    reference, source
+        (R, N, C) and (S, N, C): poses by row.
+    reference_weight, source_weight
+        (R, N) and (S, N): 1 where a row counts, 0 where it does not.
+
+    Raises
+    ------
+    ParameterError
+        If a sequence is empty, or shapes disagree.
+    """
+
+    def __init__(
+        self,
+        reference: NDArray[np.floating],
+        source: NDArray[np.floating],
+        reference_weight: NDArray[np.float64],
+        source_weight: NDArray[np.float64],
+    ) -> None:
+        _check(reference, source)
+        if (reference_weight.shape, source_weight.shape) != (reference.shape[:2], source.shape[:2]):
+            raise ParameterError("weights must have one value a frame and row")
+        self.reference, self.source = reference.astype(np.float64), source.astype(np.float64)
+        self.weights = reference_weight, source_weight
+        self._known = [
+            weight[..., None] * poses
+            for weight, poses in zip(self.weights, (self.reference, self.source), strict=True)
+        ]
+        self._squares = [
+            weight * np.sum(poses**2, axis=2)
+            for weight, poses in zip(self.weights, (self.reference, self.source), strict=True)
+        ]
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Frames of the reference and of the source."""
+        return len(self.reference), len(self.source)
+
+    def fill(self, start: int, end: int, out: F32) -> None:
+        """Write the costs of reference frames [start, end) into `out` (end - start, S)."""
+        rows, (a, b) = slice(start, end), self.weights
+        cross = self._known[0][rows].reshape(end - start, -1) @ self._known[1].reshape(len(b), -1).T
+        total = self._squares[0][rows] @ b.T + a[rows] @ self._squares[1].T - 2 * cross
+        out[:] = self._scaled(total, a[rows] @ b.T)
+
+    def pairs(self, path: NDArray[np.int32]) -> F32:
+        """(P,) costs of the pairs of a path (P, 2)."""
+        i, j = path.T
+        weight = self.weights[0][i] * self.weights[1][j]
+        squares = np.sum((self.reference[i] - self.source[j]) ** 2, axis=2)
+        return self._scaled(np.sum(weight * squares, axis=1), weight.sum(axis=1))
+
+    def part(self, rows: slice, columns: slice) -> ReliableDistances:
+        """Return the costs of some frames; a step of -1 turns time round."""
+        a, b = self.weights
+        return ReliableDistances(self.reference[rows], self.source[columns], a[rows], b[columns])
+
+    def _scaled(self, squares: NDArray[np.float64], known: NDArray[np.float64]) -> F32:
+        count = self.reference.shape[1]
+        cost = np.sqrt(np.maximum(squares, 0.0) * count / np.maximum(known, 1e-9))
+        shared = known > 1e-6
+        if not shared.all():
+            cost[~shared] = cost[shared].mean() if shared.any() else 0.0
+        return np.asarray(cost, np.float32)
+
+
+def _check(reference: NDArray[np.floating], source: NDArray[np.floating]) -> None:
+    if len(reference) == 0 or len(source) == 0:
+        raise ParameterError("an empty sequence cannot be aligned")
+    if reference.shape[1:] != source.shape[1:]:
+        raise ParameterError("poses of different dimension cannot be aligned")
+
+
+def _even(poses: F32) -> F32:
+    """Pad poses (F, D) with a zero to the even dimension that the kernels take."""
+    poses = np.asarray(poses, np.float32)
+    odd = poses.shape[1] % 2
+    return np.ascontiguousarray(np.pad(poses, ((0, 0), (0, odd))) if odd else poses)
