@@ -52,10 +52,13 @@ class Departure:
 
     @property
     def displacement(self) -> Array:
+        """(F, 3) metres by which the body is displaced in the world."""
+        return self.problem.freedom.displacement(self.unknowns)
+
+    @property
+    def distance(self) -> Array:
         """(F,) metres by which the body is displaced."""
-        if not self.problem.freedom.moves:
-            return np.zeros(len(self.unknowns))
-        return np.asarray(np.linalg.norm(self.unknowns[:, :3], axis=1))
+        return np.asarray(np.linalg.norm(self.displacement, axis=1))
 
 
 def with_departures(take: Take, departures: Iterable[Departure]) -> Take:
@@ -71,9 +74,9 @@ def with_departures(take: Take, departures: Iterable[Departure]) -> Take:
             rotations[at, turning] = rot.multiply(
                 take.rotations[at, turning], rot.from_rotation_vector(turn[at - start])
             )
-        at = start + np.flatnonzero(departure.displacement > _NOTHING)
+        at = start + np.flatnonzero(departure.distance > _NOTHING)
         if len(at):
-            step = departure.unknowns[at - start, :3]
+            step = departure.displacement[at - start]
             if above >= 0:
                 parent = take_pose(take, start, end)[1][at - start, above]
                 step = rot.rotate(rot.conjugate(parent), step)
@@ -86,7 +89,7 @@ def declared_changes(take: Take, departures: Sequence[Departure]) -> tuple[Decla
     found = []
     for departure in departures:
         amounts = {take.skeleton.names[j]: angle for j, angle in departure.angles().items()}
-        for row, amount in {ROOT_POSITION: departure.displacement, **amounts}.items():
+        for row, amount in {ROOT_POSITION: departure.distance, **amounts}.items():
             at = np.flatnonzero(amount > _NOTHING)
             if len(at):
                 start = departure.span[0]

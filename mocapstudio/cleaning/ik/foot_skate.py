@@ -31,8 +31,6 @@ Array = NDArray[np.float64]
 
 _MET = 1e-3
 """Metres: a target is reached where its point comes this close."""
-_NEARLY = 2e-4
-_CHOICES = 2
 
 
 def _parameter(default: Any, *schema: Any) -> Any:
@@ -152,7 +150,7 @@ def clean(
         tuple(_unreached(cleaned, laid)),
         slide(take, cleaned, laid),
         _turned(departures, take),
-        max((float(d.displacement.max(initial=0.0)) for d in departures), default=0.0),
+        max((float(d.distance.max(initial=0.0)) for d in departures), default=0.0),
     )
 
 
@@ -164,21 +162,16 @@ def _solve_window(
     parameters: SkateParameters,
 ) -> tuple[Departure, Sequence[Hold]]:
     start: Array | None = None
-    for choice in range(_CHOICES):
+    for weight in windows.CONTACT_WEIGHTS:
         problem = windows.problem(
-            take, inside, span, ranges, parameters.easing, parameters.root_reach
+            take, inside, span, ranges, parameters.easing, parameters.root_reach, weight
         )
         solution = solve(problem, start)
-        posed = problem.posed(solution.unknowns)
-        reached = [posed.point(h.joint, h.offset)[h.frames - span[0]] for h in inside]
-        gaps = [hold.gap(place).max() for hold, place in zip(inside, reached, strict=True)]
-        if max(gaps) < _NEARLY or choice == _CHOICES - 1:
-            break
         start = solution.unknowns
-        inside = [
-            chosen_again(hold, place, float(take.rate)) if gap >= _NEARLY else hold
-            for hold, place, gap in zip(inside, reached, gaps, strict=True)
-        ]
+        if weight < windows.CONTACT_WEIGHTS[-1]:
+            posed = problem.posed(start)
+            reached = [posed.point(h.joint, h.offset)[h.frames - span[0]] for h in inside]
+            inside = [chosen_again(h, place) for h, place in zip(inside, reached, strict=True)]
     return Departure(span, problem, solution.unknowns), inside
 
 

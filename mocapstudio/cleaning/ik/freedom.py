@@ -23,7 +23,8 @@ where a leg is nearly straight, and hardly elsewhere."""
 class Freedom:
     """The n unknowns of a frame: how far the body departs from the motion as it was.
 
-    First, where `moves`, the displacement of the body in the world (3, metres); then three a joint
+    First, where it `moves`, the displacement of the body in the world (3, metres; near its reach
+    the more of it is asked for, the less it yields, see `displacement`); then three a joint
     of `joints`: the rotation vector, in the joint's own frame and along its natural axes, by which
     it is turned further than before (radians). All zeros is the motion as it was.
 
@@ -35,19 +36,41 @@ class Freedom:
         (m, 3, 3): columns are the natural axes of each joint in its own frame.
     stiffness
         (n,) cost of each unknown: per metre or per radian.
-    moves
-        Whether the body as a whole may be displaced.
+    reach
+        Metres: the body as a whole is displaced by less than this; 0 where it stays.
     """
 
     joints: tuple[int, ...]
     axes: Array
     stiffness: Array
-    moves: bool
+    reach: float = 0.0
+
+    @property
+    def moves(self) -> bool:
+        """Whether the body as a whole may be displaced."""
+        return self.reach > 0
 
     @property
     def size(self) -> int:
         """Number of unknowns in a frame."""
         return len(self.stiffness)
+
+    def displacement(self, unknowns: Array) -> Array:
+        """(F, 3) metres that the body is displaced: ``x / sqrt(1 + |x|^2 / reach^2)``."""
+        if not self.moves:
+            return np.zeros((len(unknowns), 3))
+        x = unknowns[:, :3]
+        return np.asarray(x / self._bend(x)[:, None])
+
+    def displacement_partials(self, unknowns: Array) -> Array:
+        """(F, 3, 3) derivative of `displacement` by its unknowns."""
+        x = unknowns[:, :3]
+        bend = self._bend(x)[:, None, None]
+        outer = x[:, :, None] * x[:, None, :] / self.reach**2
+        return np.asarray((np.eye(3) - outer / bend**2) / bend)
+
+    def _bend(self, x: Array) -> Array:
+        return np.asarray(np.sqrt(1.0 + np.sum(x * x, axis=1) / self.reach**2))
 
     def columns(self, joint: int) -> slice:
         """Where the three unknowns of a joint stand."""
@@ -56,7 +79,11 @@ class Freedom:
 
 
 def freedom(
-    joints: Iterable[int], ranges: JointRanges, *, moves: bool, factor: Array | None = None
+    joints: Iterable[int],
+    ranges: JointRanges,
+    *,
+    reach: float = 0.0,
+    factor: Array | None = None,
 ) -> Freedom:
     """Let some joints turn, each the more easily about an axis the more it turns about it anyway.
 
@@ -66,16 +93,16 @@ def freedom(
         Indices of the joints.
     ranges
         How far each joint of the skeleton turns (see `ranges.joint_ranges`).
-    moves
-        Whether the body may be displaced.
+    reach
+        Metres that the body may be displaced, or 0.
     factor
         (J,) further factor on the stiffness of every joint of the skeleton, or None.
     """
     chosen = tuple(sorted(set(joints)))
     at = list(chosen)
     turning = ranges.stiffness[at] if factor is None else ranges.stiffness[at] * factor[at, None]
-    place = _ROOT_STIFFNESS if moves else np.zeros(0)
-    return Freedom(chosen, ranges.axes[at], np.concatenate([place, turning.ravel()]), moves)
+    place = _ROOT_STIFFNESS if reach > 0 else np.zeros(0)
+    return Freedom(chosen, ranges.axes[at], np.concatenate([place, turning.ravel()]), reach)
 
 
 def chain(skeleton: Skeleton, joint: int, ranges: JointRanges) -> tuple[int, ...]:

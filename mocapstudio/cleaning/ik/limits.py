@@ -1,4 +1,4 @@
-"""Limits: what a solution keeps within, as soft or as nearly hard bounds."""
+"""Limits of joints: ranges that a solution keeps to, as soft or as nearly hard as wished."""
 
 from __future__ import annotations
 
@@ -54,28 +54,3 @@ class RangeLimit:
         active = (excess[outside] != 0)[..., None] * self.weight
         jacobian[:, :, posed.freedom.columns(self.joint)] = active * (self.axes.T @ step[outside])
         return Rows(outside, self.weight * excess[outside], jacobian)
-
-
-@dataclass(frozen=True, eq=False)
-class ReachLimit:
-    """The body is displaced by no more than a radius.
-
-    Parameters
-    ----------
-    radius
-        Metres.
-    weight
-        Per metre.
-    """
-
-    radius: float
-    weight: float
-
-    def rows(self, posed: Posed) -> Rows:
-        """Excess (F, 1) of the displacement over the radius."""
-        place = posed.unknowns[:, :3]
-        length = np.linalg.norm(place, axis=1)
-        outside = np.nonzero(length > self.radius)[0]
-        jacobian = np.zeros((len(outside), 1, posed.freedom.size))
-        jacobian[:, 0, :3] = self.weight * place[outside] / length[outside, None]
-        return Rows(outside, self.weight * (length[outside, None] - self.radius), jacobian)

@@ -107,7 +107,7 @@ class Posed:
                 positions[:, at] = positions[:, parent] + step
                 world[:, at] = world[:, parent] @ self._local[:, at]
             if at == window.carrier and self.freedom.moves:
-                positions[:, at] += self.unknowns[:, :3]
+                positions[:, at] += self.freedom.displacement(self.unknowns)
         return positions, world
 
     def _angular_gains(self, moving: list[int]) -> Array:
@@ -154,7 +154,7 @@ class Posed:
         """(m, 3, n): velocity of a point (m, 3) fixed to `joint` by the unknowns, at `frames`."""
         result = np.zeros((len(frames), 3, self.freedom.size))
         if self.freedom.moves:
-            result[:, :, :3] = np.eye(3)
+            result[:, :, :3] = self.freedom.displacement_partials(self.unknowns[frames])
         for i in self._above(joint):
             turning = self.freedom.joints[i]
             arm = point - self.positions[frames, self.at(turning)]

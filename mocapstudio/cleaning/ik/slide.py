@@ -52,7 +52,7 @@ def slide(before: Take, after: Take, holds: Sequence[Hold]) -> Slide:
 
 def _speeds(take: Take, holds: Sequence[Hold]) -> Array:
     speeds = [
-        np.linalg.norm(np.diff((place - hold.target) @ hold.projection.T, axis=0), axis=1)
+        hold.steps(place)
         for hold, place in zip(holds, places(take, holds), strict=True)
     ]
     # Contacts of a single frame do not slide.

@@ -21,7 +21,7 @@ from mocapstudio.cleaning.ik.posed import Posed, Window
 
 Array = NDArray[np.float64]
 
-_SETTLED = 1e-6
+_SETTLED = 1e-3
 """Relative fall of the cost below which a solution is settled."""
 _FIRST_DAMPING = 1e-8
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,14 +18,14 @@ from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.kinematics import take_pose
 from mocapstudio.motion.take import Take
-from mocapstudio.motion.topology import topology
 
 Array = NDArray[np.float64]
 
 _SLOW = 0.05
 """Metres a second: frames in which the point is faster count less for where it stood."""
-_AGREED = 1e-5
-_ROUNDS = 200
+_ALONG = 0.02
+_APART = 0.005
+"""Metres: points of one foot nearer than this are one point."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +43,7 @@ class Hold:
     target
         (m, 3) metres: where it is to be.
     projection
-        (r, 3): rows are the unit directions in which it is held.
+        (r, 3) or (m, r, 3): rows span the directions in which it is held.
     """
 
     contact: Contact
@@ -59,9 +58,19 @@ class Hold:
         """(m,) frames of the take."""
         return np.arange(self.contact.start, self.contact.end)
 
+    def steps(self, place: Array) -> Array:
+        """(m - 1,) metres a point that is at `place` (m, 3) slides from frame to frame."""
+        away = place - self.target
+        if isinstance(self.contact.target, Line):
+            away = away @ self.projection.T
+        return np.asarray(np.linalg.norm(np.diff(away, axis=0), axis=1))
+
     def gap(self, place: Array) -> Array:
-        """(m,) metres between a point that is at `place` (m, 3) and the target, where held."""
-        return np.asarray(np.linalg.norm((place - self.target) @ self.projection.T, axis=1))
+        """(m,) metres between a point that is at `place` (m, 3) and the target."""
+        away = place - self.target
+        if isinstance(self.contact.target, Line):
+            away = away @ self.projection.T
+        return np.asarray(np.linalg.norm(away, axis=1))
 
 
 def holds(
@@ -92,7 +101,7 @@ def holds(
     pose = take_pose(take)
     offsets = {point.key: np.asarray(point.offset, dtype=float) for point in points}
     laid = [_hold(take, pose, contact, offsets, others) for contact in contacts]
-    return _agree(take, laid)
+    return _freed_along(take, laid)
 
 
 def _hold(
@@ -169,7 +178,7 @@ def _on_plane(place: Array, normal: Array, height: float) -> Array:
     return np.asarray(place + normal * (height - place[1]) * normal[1])
 
 
-def chosen_again(hold: Hold, place: Array, rate: float) -> Hold:
+def chosen_again(hold: Hold, place: Array) -> Hold:
     """Move a floor's target to where its point (m, 3) could be brought; others stay."""
     if not isinstance(hold.contact.target, Floor):
         return hold
@@ -178,52 +187,34 @@ def chosen_again(hold: Hold, place: Array, rate: float) -> Hold:
     return replace(hold, target=np.broadcast_to(stand, place.shape))
 
 
-def _agree(take: Take, laid: Sequence[Hold]) -> tuple[Hold, ...]:
-    """Let floor targets of one limb that overlap in time be as far apart as their points are.
+def _freed_along(take: Take, laid: Sequence[Hold]) -> tuple[Hold, ...]:
+    """Free the distance between two points of one foot where both stand on a floor.
 
-    Heel and ball of one foot cannot stand where each of them would on its own; distances are
-    corrected pair by pair, longer contacts giving way less, until all agree.
+    The foot is rigid: heel and ball cannot stand where each of them would on its own, and to hold
+    both in every direction would twist the foot for a millimetre. The shorter contact is not held
+    along the line to the longer one; the bones see to that.
     """
-    floors = [h for h in laid if isinstance(h.contact.target, Floor)]
-    spots = {id(h): h.target[0].copy() for h in floors}
-    pairs = [pair for a, b in combinations(floors, 2) if (pair := _pair(take, a, b)) is not None]
-    for _ in range(_ROUNDS):
-        worst = 0.0
-        for a, b, apart in pairs:
-            way = spots[id(a)] - spots[id(b)]
+    ranked = sorted(laid, key=lambda h: (isinstance(h.contact.target, Floor), -len(h.frames)))
+    free = {}
+    for rank, hold in enumerate(ranked):
+        if not isinstance(hold.contact.target, Floor):
+            continue
+        held = np.broadcast_to(np.eye(3), (len(hold.frames), 3, 3)).copy()
+        open_frames = np.ones(len(held), dtype=bool)
+        for other in ranked[:rank]:
+            both = _together(take, hold, other) & open_frames
+            way = other.target[0] - hold.target[0]
             length = float(np.linalg.norm(way))
-            if length < 1e-9:
-                continue
-            excess = length - apart
-            worst = max(worst, abs(excess))
-            share = len(b.frames) / (len(a.frames) + len(b.frames))
-            spots[id(a)] -= _level(a, share * excess * way / length)
-            spots[id(b)] += _level(b, (1 - share) * excess * way / length)
-        if worst < _AGREED:
-            break
-    return tuple(
-        replace(h, target=np.broadcast_to(spots[id(h)], h.place.shape)) if id(h) in spots else h
-        for h in laid
-    )
+            if both.any() and length > _APART:
+                held[both] -= (1.0 - _ALONG) * np.outer(way, way) / length**2
+                open_frames &= ~both
+        free[id(hold)] = held
+    return tuple(replace(h, projection=free.get(id(h), h.projection)) for h in laid)
 
 
-def _pair(take: Take, a: Hold, b: Hold) -> tuple[Hold, Hold, float] | None:
-    start = max(a.contact.start, b.contact.start)
-    end = min(a.contact.end, b.contact.end)
-    parts = topology(take.skeleton)
-    if start >= end or a.joint in parts.above_hips or b.joint in parts.above_hips:
-        return None
-    near = a.joint == b.joint or take.skeleton.parents[a.joint] == b.joint
-    near = near or take.skeleton.parents[b.joint] == a.joint
-    if not near or (a.joint == b.joint and np.array_equal(a.offset, b.offset)):
-        return None
-    one = a.place[start - a.contact.start : end - a.contact.start]
-    other = b.place[start - b.contact.start : end - b.contact.start]
-    return a, b, float(np.median(np.linalg.norm(one - other, axis=1)))
-
-
-def _level(hold: Hold, step: Array) -> Array:
-    floor = hold.contact.target
-    assert isinstance(floor, Floor)
-    normal = np.array(floor.normal) / np.linalg.norm(floor.normal)
-    return np.asarray(step - normal * (step @ normal))
+def _together(take: Take, hold: Hold, other: Hold) -> NDArray[np.bool_]:
+    """(m,) frames of `hold` in which `other`, a point of the same foot, is in contact too."""
+    up = take.skeleton.parents
+    near = hold.joint == other.joint or other.joint == up[hold.joint] or hold.joint == up[other.joint]
+    within = (hold.frames >= other.contact.start) & (hold.frames < other.contact.end)
+    return within & near

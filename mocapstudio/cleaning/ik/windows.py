@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mocapstudio.cleaning.contacts.anatomy import leg_length
 from mocapstudio.cleaning.ik.freedom import Freedom, chain, freedom
-from mocapstudio.cleaning.ik.limits import RangeLimit, ReachLimit
+from mocapstudio.cleaning.ik.limits import RangeLimit
 from mocapstudio.cleaning.ik.objectives.orientation import Orientation
 from mocapstudio.cleaning.ik.objectives.over_time import KeepPose, Smoothness
 from mocapstudio.cleaning.ik.objectives.position import PointAtTarget
@@ -21,13 +21,13 @@ from mocapstudio.cleaning.ik.targets import Hold
 from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.skeleton import Skeleton
 from mocapstudio.motion.take import Take
+from mocapstudio.motion.topology import topology
 
 Array = NDArray[np.float64]
 
-_CONTACT_WEIGHT = 2e5
-"""Per metre: a departure of 0.1 rad is bought by a hundredth of a millimetre."""
-_LIMIT_WEIGHT = 1e3
-_REACH_WEIGHT = 2e6
+CONTACT_WEIGHTS = (1e3, 5e3, 5e4)
+"""Per metre, growing: at first contacts on one foot find places that agree, at last they hold."""
+_LIMIT_WEIGHT = 30.0
 _TURN_WEIGHT = 2.0
 """Per radian: feet and hands in contact keep their direction rather than their angle."""
 _SMOOTHNESS = 2.5
@@ -65,19 +65,20 @@ def problem(
     ranges: JointRanges,
     easing: float,
     root_reach: float,
+    weight: float,
 ) -> Problem:
-    """State what is wanted of one window: contacts met, the rest as it was."""
+    """State what is wanted of one window: contacts met, the rest as it was.
+
+    `weight` is that of contacts, per metre.
+    """
     start, end = span
     ends = sorted({h.joint for h in holds})
     joints = {j for end_joint in ends for j in chain(take.skeleton, end_joint, ranges)}
-    moves = root_reach > 0
-    free = freedom(joints, ranges, moves=moves)
+    free = freedom(joints, ranges, reach=root_reach * leg_length(take.skeleton))
     view = window(take, start, end, [*ends, *joints])
     asis = Posed(view, free, np.zeros((end - start, free.size)))
     wishes: list[Objective] = [
-        PointAtTarget(
-            h.joint, h.offset, h.frames - start, h.target, _CONTACT_WEIGHT, h.projection
-        )
+        PointAtTarget(h.joint, h.offset, h.frames - start, h.target, weight, h.projection)
         for h in holds
     ]
     every = np.arange(end - start)
@@ -88,10 +89,7 @@ def problem(
         for j in ends
     ]
     wishes += [range_limit(take, j, span, ranges, _LIMIT_WEIGHT) for j in free.joints]
-    if moves:
-        radius = root_reach * leg_length(take.skeleton)
-        wishes.append(ReachLimit(radius, _REACH_WEIGHT))
-    return Problem(view, free, wishes, smooth(take, free, span, easing))
+    return Problem(view, free, wishes, smooth(take, free, span, easing, holds))
 
 
 def range_limit(
@@ -106,24 +104,42 @@ def range_limit(
 
 
 def smooth(
-    take: Take, free: Freedom, span: tuple[int, int], easing: float
+    take: Take, free: Freedom, span: tuple[int, int], easing: float, holds: Sequence[Hold] = ()
 ) -> tuple[TimeObjective, ...]:
-    """Keep the pose, and ease into and out of every departure within about `easing` seconds."""
+    """Keep the pose, and ease into and out of every departure within about `easing` seconds.
+
+    A limb in contact stands as still as its point has to, whatever detail that takes away.
+    """
     start, end = span
     low, high = take.span
     length = max(1.0, easing * float(take.rate) / _FADES)
-    return (
-        KeepPose(end - start, free.stiffness),
-        Smoothness(
-            end - start,
-            levers(take.skeleton, free) * (_SMOOTHNESS * length**_ORDER),
-            _ORDER,
-            joins_before=start not in (0, low),
-            joins_after=end not in (take.frames, high),
-        ),
-    )
+    weights = levers(take.skeleton, free) * (_SMOOTHNESS * length**_ORDER)
+    joins = {"joins_before": start not in (0, low), "joins_after": end not in (take.frames, high)}
+    wishes: list[TimeObjective] = [KeepPose(end - start, free.stiffness)]
+    for columns, eased in _contact_frames(take, free, span, holds):
+        mine = np.where(columns, weights, 0.0)
+        wishes.append(Smoothness(end - start, mine, _ORDER, eased=eased, **joins))
+    return tuple(wishes)
 
 
+def _contact_frames(
+    take: Take, free: Freedom, span: tuple[int, int], holds: Sequence[Hold]
+) -> Iterator[tuple[NDArray[np.bool_], NDArray[np.bool_] | None]]:
+    """Unknowns (n,) of each limb with the frames in which it is in contact; then all others."""
+    parts = topology(take.skeleton)
+    others = np.ones(free.size, dtype=bool)
+    limbs = {parts.limb_of(h.joint).joints for h in holds if h.joint not in parts.above_hips}
+    for joints in sorted(limbs):
+        mine = np.zeros(free.size, dtype=bool)
+        for joint in set(joints) & set(free.joints):
+            mine[free.columns(joint)] = True
+        eased = np.zeros(span[1] - span[0], dtype=bool)
+        for hold in holds:
+            if hold.joint in joints:
+                eased[hold.frames - span[0]] = True
+        others &= ~mine
+        yield mine, eased
+    yield others, None
 
 
 def levers(skeleton: Skeleton, free: Freedom) -> Array:

@@ -30,8 +30,8 @@ class PointAtTarget:
     weight
         Per metre.
     projection
-        (r, 3): rows are the unit directions in which the point is held; the identity holds it in
-        all, one row on a plane, two on a line.
+        (r, 3) or (m, r, 3): rows span the directions in which the point is held; the identity
+        holds it in all, one row on a plane, two on a line.
     """
 
     joint: int
@@ -46,7 +46,8 @@ class PointAtTarget:
         point = posed.point(self.joint, self.offset)[self.frames]
         scaled = self.weight * self.projection
         partials = posed.point_partials(self.joint, point, self.frames)
-        return Rows(self.frames, (point - self.target) @ scaled.T, scaled @ partials)
+        away = (scaled @ (point - self.target)[..., None])[..., 0]
+        return Rows(self.frames, away, scaled @ partials)
 
 
 def across(direction: Array) -> Array:
