@@ -79,6 +79,12 @@ def cost(problem: Problem, unknowns: Array) -> float:
     return _cost(problem, unknowns, _rows(problem, unknowns))
 
 
+def gradient(problem: Problem, unknowns: Array) -> Array:
+    """(F, n): derivative of `cost` by the unknowns."""
+    rows = _rows(problem, unknowns)
+    return _normal(problem, _time_band(problem), unknowns, rows)[1]
+
+
 def solve(problem: Problem, start: Array | None = None, most_steps: int = 30) -> Solution:
     """Minimise the sum of squares.
 
@@ -99,13 +105,13 @@ def solve(problem: Problem, start: Array | None = None, most_steps: int = 30) ->
         return Solution(unknowns, now, 0, True)
     fixed = _time_band(problem)
     damping, growth = _FIRST_DAMPING, 2.0
-    band, gradient = _normal(problem, fixed, unknowns, rows)
+    band, slope = _normal(problem, fixed, unknowns, rows)
     for step in range(1, most_steps + 1):
-        move = _damped_step(band, gradient, damping)
+        move = _damped_step(band, slope, damping)
         if move is None:
             damping, growth = damping * growth, growth * 2
             continue
-        expected = 0.5 * float(np.sum(move * (damping * _diagonal(band, move) * move - gradient)))
+        expected = 0.5 * float(np.sum(move * (damping * _diagonal(band, move) * move - slope)))
         rows = _rows(problem, unknowns + move)
         fall = now - _cost(problem, unknowns + move, rows)
         if fall < 0 and expected > _SETTLED * now:
@@ -118,7 +124,7 @@ def solve(problem: Problem, start: Array | None = None, most_steps: int = 30) ->
             return Solution(unknowns, now, step, True)
         damping *= max(1.0 / 3.0, 1.0 - (2.0 * fall / expected - 1.0) ** 3)
         growth = 2.0
-        band, gradient = _normal(problem, fixed, unknowns, rows)
+        band, slope = _normal(problem, fixed, unknowns, rows)
     return Solution(unknowns, now, most_steps, False)
 
 
