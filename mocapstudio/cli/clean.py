@@ -10,7 +10,7 @@ import typer
 
 from mocapstudio.cli.detection_options import ModeOption, Quick, Threshold
 from mocapstudio.cli.output import JsonPath, check_writable, write_json
-from mocapstudio.cli.take_options import Context, Fps, JointMap, TakeOptions, Unit, UpAxis
+from mocapstudio.cli.take_options import Context, TakeOptions, with_take_options
 from mocapstudio.motion.errors import MocapError
 
 if TYPE_CHECKING:
@@ -25,6 +25,7 @@ OutPath = Annotated[
 ]
 
 
+@with_take_options
 def clean(
     takes: Annotated[list[Path], typer.Argument(metavar="TAKE...", help="Files or folders.")],
     out: OutPath,
@@ -33,10 +34,8 @@ def clean(
     mode: ModeOption = None,
     quick: Quick = False,
     json_path: JsonPath = None,
-    fps: Fps = None,
-    unit: Unit = None,
-    up: UpAxis = None,
-    joint_map: JointMap = None,
+    *,
+    reading: TakeOptions,
 ) -> None:
     """Repair all that is found in takes, and write them.
 
@@ -51,7 +50,7 @@ def clean(
 
     chosen = parameters(threshold, mode)
     check_writable(json_path)
-    work = Workload(TakeOptions(fps, unit, up, joint_map))
+    work = Workload(reading)
     files = work.files(takes)
     context_files = work.files(context or ())
     targets = Targets(out, files, (*files, *context_files))

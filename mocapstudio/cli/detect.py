@@ -9,7 +9,7 @@ import typer
 
 from mocapstudio.cli.detection_options import ModeOption, Quick, Threshold
 from mocapstudio.cli.output import JsonPath, check_writable, write_json, write_npz
-from mocapstudio.cli.take_options import Context, Fps, JointMap, TakeOptions, Unit, UpAxis
+from mocapstudio.cli.take_options import Context, TakeOptions, with_take_options
 from mocapstudio.motion.errors import MocapError
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ MapPath = Annotated[
 ]
 
 
+@with_take_options
 def detect(
     takes: Annotated[list[Path], typer.Argument(metavar="TAKE...", help="Files or folders.")],
     context: Context = None,
@@ -34,10 +35,8 @@ def detect(
     quick: Quick = False,
     map_path: MapPath = None,
     json_path: JsonPath = None,
-    fps: Fps = None,
-    unit: Unit = None,
-    up: UpAxis = None,
-    joint_map: JointMap = None,
+    *,
+    reading: TakeOptions,
 ) -> None:
     """Find what is wrong in takes, where, and how badly.
 
@@ -49,7 +48,7 @@ def detect(
 
     chosen = parameters(threshold, mode)
     check_writable(json_path)
-    work = Workload(TakeOptions(fps, unit, up, joint_map))
+    work = Workload(reading)
     files = work.files(takes)
     maps = _MapFiles(map_path, several=len(files) > 1)
     others = work.context(context)

@@ -7,11 +7,12 @@ from typing import Annotated
 
 import typer
 
-from mocapstudio.cli.take_options import Context, Fps, JointMap, TakeOptions, Unit, UpAxis
+from mocapstudio.cli.take_options import Context, TakeOptions, with_take_options
 from mocapstudio.motion.errors import FileError
 from mocapstudio.motion.joint_map import read_joint_map
 
 
+@with_take_options
 def review(
     paths: Annotated[
         list[Path] | None,
@@ -26,10 +27,8 @@ def review(
             help="Another performer in the same scene; may be repeated.",
         ),
     ] = None,
-    fps: Fps = None,
-    unit: Unit = None,
-    up: UpAxis = None,
-    joint_map: JointMap = None,
+    *,
+    reading: TakeOptions,
 ) -> None:
     """Open the desk on a session or on takes."""
     for path in (*(paths or ()), *(context or ()), *(partner or ())):
@@ -37,6 +36,5 @@ def review(
             raise FileError(path, "no such file or folder")
     from mocapstudio.gui.application import run
 
-    renamed = read_joint_map(joint_map) if joint_map is not None else None
-    options = TakeOptions(fps, unit, up).reading()
-    raise typer.Exit(run(paths or (), context or (), partner or (), options, renamed))
+    renamed = read_joint_map(reading.joint_map) if reading.joint_map is not None else None
+    raise typer.Exit(run(paths or (), context or (), partner or (), reading.reading(), renamed))

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import inspect
+from collections.abc import Callable
+from dataclasses import dataclass, fields
 from fractions import Fraction
+from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_type_hints
 
 import typer
 
@@ -13,6 +16,9 @@ if TYPE_CHECKING:
     from mocapstudio.formats import ReadOptions
 
 Up = Literal["x", "y", "z"]
+Forward = Literal["x", "-x", "y", "-y", "z", "-z"]
+
+_PANEL = "How takes are read"
 
 
 def _rate(text: str) -> Fraction:
@@ -30,7 +36,11 @@ def _unit(text: str) -> float:
 Fps = Annotated[
     Fraction | None,
     typer.Option(
-        "--fps", parser=_rate, metavar="RATE", help="Frame rate, in place of what the file says."
+        "--fps",
+        parser=_rate,
+        metavar="RATE",
+        help="Frame rate, in place of what the file says.",
+        rich_help_panel=_PANEL,
     ),
 ]
 Unit = Annotated[
@@ -40,15 +50,54 @@ Unit = Annotated[
         parser=_unit,
         metavar="UNIT",
         help="Unit of length: m, cm, mm, in, asf, or what it is in metres.",
+        rich_help_panel=_PANEL,
     ),
 ]
-UpAxis = Annotated[Up | None, typer.Option("--up", help="The axis of the file that points up.")]
+UpAxis = Annotated[
+    Up | None,
+    typer.Option("--up", help="The axis of the file that points up.", rich_help_panel=_PANEL),
+]
+ForwardAxis = Annotated[
+    Forward | None,
+    typer.Option(
+        "--forward", help="The axis of the file that points forward.", rich_help_panel=_PANEL
+    ),
+]
+Angles = Annotated[
+    Literal["degrees", "radians"],
+    typer.Option("--angles", help="Unit of the file's angles.", rich_help_panel=_PANEL),
+]
+RootOffset = Annotated[
+    Literal["replace", "add"],
+    typer.Option(
+        "--root-offset",
+        help="Whether the root's position replaces its OFFSET or is added to it.",
+        rich_help_panel=_PANEL,
+    ),
+]
+TPose = Annotated[
+    Literal["trim", "keep"],
+    typer.Option(
+        "--t-pose",
+        help="Whether rows of a T-pose before the motion are left out of the analysis.",
+        rich_help_panel=_PANEL,
+    ),
+]
+Lenient = Annotated[
+    bool,
+    typer.Option(
+        "--lenient",
+        help="Read the whole rows there are, whatever number is stated.",
+        rich_help_panel=_PANEL,
+    ),
+]
 JointMap = Annotated[
     Path | None,
     typer.Option(
         "--joint-map",
         metavar="FILE",
         help="JSON object: names of joints in the context and what they are called in the take.",
+        rich_help_panel=_PANEL,
     ),
 ]
 Context = Annotated[
@@ -60,18 +109,75 @@ Context = Annotated[
     ),
 ]
 
+OPTION_OF = {
+    "fps": "--fps",
+    "unit": "--unit",
+    "up": "--up",
+    "forward": "--forward",
+    "angles": "--angles",
+    "root_offset": "--root-offset",
+    "trim_start": "--t-pose",
+    "lenient": "--lenient",
+}
+"""By which option the user decides what a reader guessed, by field of `ReadOptions`."""
+
 
 @dataclass(frozen=True)
 class TakeOptions:
-    """How takes are read, as the user wants it."""
+    """How takes are read, as the user wants it; every field is an option of the command line."""
 
-    fps: Fraction | None = None
-    unit: float | None = None
-    up: Up | None = None
-    joint_map: Path | None = None
+    fps: Fps = None
+    unit: Unit = None
+    up: UpAxis = None
+    joint_map: JointMap = None
+    forward: ForwardAxis = None
+    angles: Angles = "degrees"
+    root_offset: RootOffset = "replace"
+    t_pose: TPose = "trim"
+    lenient: Lenient = False
 
     def reading(self) -> ReadOptions:
         """Return what the readers are told."""
         from mocapstudio.formats import ReadOptions
 
-        return ReadOptions(fps=self.fps, unit=self.unit, up=self.up)
+        return ReadOptions(
+            fps=self.fps,
+            unit=self.unit,
+            up=self.up,
+            forward=self.forward,
+            angles=self.angles,
+            root_offset=self.root_offset,
+            trim_start=self.t_pose == "trim",
+            lenient=self.lenient,
+        )
+
+
+def with_take_options(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command an option for every field of `TakeOptions`, in place of one parameter.
+
+    Parameters
+    ----------
+    command
+        A function with a parameter `reading`, to which the `TakeOptions` are passed.
+    """
+    hints = get_type_hints(TakeOptions, include_extras=True)
+    own = inspect.signature(command, eval_str=True)
+    parameters = [p for p in own.parameters.values() if p.name != "reading"]
+    parameters += [
+        inspect.Parameter(
+            field.name,
+            inspect.Parameter.KEYWORD_ONLY,
+            default=field.default,
+            annotation=hints[field.name],
+        )
+        for field in fields(TakeOptions)
+    ]
+
+    @wraps(command)
+    def run(**words: Any) -> None:
+        chosen = {field.name: words.pop(field.name) for field in fields(TakeOptions)}
+        command(**words, reading=TakeOptions(**chosen))
+
+    run.__signature__ = own.replace(parameters=parameters)  # type: ignore[attr-defined]
+    run.__annotations__ = {p.name: p.annotation for p in parameters}
+    return run

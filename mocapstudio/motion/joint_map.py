@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from mocapstudio.motion.errors import FileError
+from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.motion.take import Take
 
 
@@ -38,3 +39,11 @@ def rename_joints(take: Take, names: Mapping[str, str]) -> Take:
     if renamed == take.skeleton.names:
         return take
     return replace(take, skeleton=replace(take.skeleton, names=renamed))
+
+
+def rename_recording(take: Take | MarkerTake, names: Mapping[str, str]) -> Take | MarkerTake:
+    """Return a take with its joints, or its markers, renamed."""
+    if isinstance(take, Take):
+        return rename_joints(take, names)
+    renamed = tuple(names.get(label, label) for label in take.labels)
+    return take if renamed == take.labels else replace(take, labels=renamed)
