@@ -50,6 +50,8 @@ class TimePlot(pg.PlotWidget):  # type: ignore[misc]
         An axis for the left side, or None.
     sweeps
         Whether a plain drag inside the plot sweeps instead of moving the play head.
+    time_axis
+        The time axis, where it is to be another than that of `time_range`.
     """
 
     scrubbed = Signal(int)
@@ -70,8 +72,9 @@ class TimePlot(pg.PlotWidget):  # type: ignore[misc]
         axis: str,
         left: pg.AxisItem | None = None,
         sweeps: bool = False,
+        time_axis: TimeAxis | None = None,
     ) -> None:
-        self.time_axis = TimeAxis(axis)
+        self.time_axis = time_axis or TimeAxis(axis)
         axes = {axis: self.time_axis} | ({"left": left} if left is not None else {})
         super().__init__(plotItem=pg.PlotItem(axisItems=axes, enableMenu=False))
         self.time_range = time_range

@@ -32,6 +32,38 @@ _SAMPLES = 48
 _GIRTH = {Part.ORIGINAL: 0.6, Part.PROPOSAL: 0.8, Part.NEIGHBOUR: 0.45}
 
 
+def set_up(renderer: Any) -> None:
+    """Make a renderer of VTK fast and light its scene from the camera."""
+    # Order-independent translucency is a pass over the whole picture; thin lines need none.
+    renderer.SetUseOIT(False)
+    # Three actors: finding out what is out of sight costs more than drawing it.
+    renderer.GetCullers().RemoveAllItems()
+    renderer.RemoveAllLights()
+    for place, strength in _LIGHTS:
+        light = vtkLight()
+        light.SetLightTypeToCameraLight()
+        light.SetPosition(*place)
+        light.SetIntensity(strength)
+        renderer.AddLight(light)
+
+
+def aim(renderer: Any, camera: Turntable, radius: float) -> None:
+    """Show a renderer's scene, which reaches `radius` metres, from where the camera is."""
+    view = renderer.GetActiveCamera()
+    view.SetViewAngle(np.degrees(VIEW_ANGLE))
+    view.SetPosition(*camera.position())
+    view.SetFocalPoint(*camera.focal)
+    view.SetViewUp(*camera.basis()[1])
+    view.SetClippingRange(*camera.clipping(radius))
+
+
+def colour_ground(renderer: Any, palette: Palette) -> None:
+    """Fill the background from the palette's bottom to its top."""
+    renderer.SetBackground(*(c / 255 for c in palette.bottom))
+    renderer.SetBackground2(*(c / 255 for c in palette.top))
+    renderer.GradientBackgroundOn()
+
+
 class Scene3D:
     """Everything that is drawn; three actors, whatever is on stage.
 
@@ -47,17 +79,7 @@ class Scene3D:
         for mesh in (self._floor.mesh, self._marks.mesh, self._bodies.mesh):
             renderer.AddActor(mesh.actor)
         self._floor.mesh.actor.ForceTranslucentOn()
-        # Order-independent translucency is a pass over the whole picture; thin lines need none.
-        renderer.SetUseOIT(False)
-        # Three actors: finding out what is out of sight costs more than drawing it.
-        renderer.GetCullers().RemoveAllItems()
-        renderer.RemoveAllLights()
-        for place, strength in _LIGHTS:
-            light = vtkLight()
-            light.SetLightTypeToCameraLight()
-            light.SetPosition(*place)
-            light.SetIntensity(strength)
-            renderer.AddLight(light)
+        set_up(renderer)
         self._roles: tuple[Role, ...] = ()
         self._palette: Palette | None = None
         self.stature = 1.7
@@ -71,9 +93,7 @@ class Scene3D:
         self._roles, self._palette = tuple(roles), palette
         self._plain = [_plain_colours(role, palette) for role in roles]
         self._bodies.cast([role.figure for role in roles])
-        self._renderer.SetBackground(*(c / 255 for c in palette.bottom))
-        self._renderer.SetBackground2(*(c / 255 for c in palette.top))
-        self._renderer.GradientBackgroundOn()
+        colour_ground(self._renderer, palette)
         if roles:
             self._lay_floor(palette)
         else:
@@ -118,12 +138,7 @@ class Scene3D:
 
     def aim(self, camera: Turntable) -> None:
         """Show the scene from where the camera is."""
-        view = self._renderer.GetActiveCamera()
-        view.SetViewAngle(np.degrees(VIEW_ANGLE))
-        view.SetPosition(*camera.position())
-        view.SetFocalPoint(*camera.focal)
-        view.SetViewUp(*camera.basis()[1])
-        view.SetClippingRange(*camera.clipping(self._radius))
+        aim(self._renderer, camera, self._radius)
 
     def _result_colours(self, look: Look) -> NDArray[np.uint8]:
         assert self._palette is not None
