@@ -48,7 +48,7 @@ _STANDING, _FEWEST = 0.08, 5
 
 
 def contact_points(take: Take, pose: Pose | None = None) -> tuple[ContactPoint, ...]:
-    """Heel, ball and toe of each foot, palm of each hand, in the frame of the joint that carries it.
+    """Heel, ball and toe of each foot, palm of each hand, in the frames of their joints.
 
     Parameters
     ----------
