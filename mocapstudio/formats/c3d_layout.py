@@ -19,6 +19,7 @@ _KEY = 0x50
 _NO_RATE = Fraction(100)
 _FULL = 0xFFFF
 _SAME_RATE = 0.2
+_BEST_FOUNDED = ("TRIAL", "POINT:LONG_FRAMES", "POINT:FRAMES", "the header")
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,7 +106,7 @@ def lay_out(
     analog = numbers.word(data, 4)
     layout = Layout(numbers, start, 0, points, analog, scale < 0, abs(scale), 1)
     there = max(0, (len(data) - start) // layout.stride)
-    first, frames = _frames(path, data, parameters, there, problems)
+    first, frames = _frames(data, parameters, there, layout, problems)
     if frames > there:
         what = f"cut off: {frames} frames of {layout.stride} bytes stated, {there} are there"
         if not lenient or not there:
@@ -146,12 +147,13 @@ def _start(path: Path, data: bytes, parameters: Parameters, problems: list[Probl
 
 
 def _frames(
-    path: Path, data: bytes, parameters: Parameters, there: int, problems: list[Problem]
+    data: bytes, parameters: Parameters, there: int, layout: Layout, problems: list[Problem]
 ) -> tuple[int, int]:
     """Number of the first frame and count of frames."""
     numbers = parameters.layout
     first, last = numbers.word(data, 6), numbers.word(data, 8)
-    counts = {"the header": last - first + 1}
+    # 16 bits hold no more than 65,535, which some programs write for 'more'.
+    counts = {"the header": last - first + 1} if last < _FULL else {}
     begin, end = (_long(parameters, f"ACTUAL_{name}_FIELD") for name in ("START", "END"))
     if begin is not None and end is not None and end >= begin:
         counts["TRIAL"] = end - begin + 1
@@ -160,20 +162,28 @@ def _frames(
         stated = parameters.count("POINT", name)
         if stated is not None and stated > 0:
             counts[f"POINT:{name}"] = stated
-    # 16 bits hold no more than 65,535, and some programs write that for 'more'.
-    ranked = [counts[key] for key in ("TRIAL", "POINT:LONG_FRAMES") if key in counts]
-    ranked += [n for n in (counts.get("POINT:FRAMES", 0), counts["the header"]) if n > 0]
-    if not ranked:
-        return first, there
+    ranked = [counts[key] for key in _BEST_FOUNDED if counts.get(key, 0) > 0]
+    if max(ranked, default=_FULL) == _FULL:
+        return first, _unstated(data, there, layout, problems)
     chosen = _fitting(ranked, there)
-    apart = {key: count for key, count in counts.items() if count != chosen}
-    wrapped = chosen > _FULL
-    apart = {k: n for k, n in apart.items() if not (wrapped and n <= _FULL)}
+    apart = {k: n for k, n in counts.items() if n != chosen and (chosen < _FULL or n > _FULL)}
     if apart:
         stated_by = ", ".join(f"{key} {count}" for key, count in counts.items())
         what = f"frames are stated differently: {stated_by}; {there} are there"
         problems.append(Problem(None, what, f"read {chosen}"))
     return first, chosen
+
+
+def _unstated(data: bytes, there: int, layout: Layout, problems: list[Problem]) -> int:
+    """Count the frames that are there, without the zeros that fill the last block."""
+    end = layout.start + there * layout.stride
+    least = max(there - BLOCK // layout.stride, 1)
+    while there > least and not any(data[end - layout.stride : end]):
+        there, end = there - 1, end - layout.stride
+    if there != _FULL:
+        what = f"no number of frames below {_FULL} is stated, {there} are there"
+        problems.append(Problem(None, what, f"read {there}"))
+    return there
 
 
 def _fitting(ranked: list[int], there: int) -> int:

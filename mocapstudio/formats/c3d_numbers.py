@@ -49,7 +49,8 @@ class Numbers:
         # A VAX F float is a little-endian pair of words, the high one first, times four.
         halves = np.frombuffer(data, dtype="<u2").reshape(-1, 2)
         bits = (halves[:, 0].astype(np.uint32) << 16) | halves[:, 1]
-        values: NDArray[np.float32] = bits.view(np.float32) / np.float32(4)
+        with np.errstate(invalid="ignore"):
+            values: NDArray[np.float32] = bits.view(np.float32) / np.float32(4)
         return values
 
     def words_bytes(self, values: NDArray[np.int16]) -> bytes:
@@ -60,8 +61,9 @@ class Numbers:
         """Inverse of `floats`."""
         if self.name != "DEC":
             return values.astype(f"{self.order}f4").tobytes()
-        bits = np.ascontiguousarray(values * np.float32(4), dtype=np.float32).view(np.uint32)
+        flat = np.asarray(values, dtype=np.float32).ravel()
+        bits = (flat * np.float32(4)).view(np.uint32)
         halves = np.stack([bits >> 16, bits & 0xFFFF], axis=-1).astype("<u2")
-        # A zero of IEEE times four is a zero of VAX as well, but for its sign.
-        halves[np.asarray(values).ravel() == 0] = 0
+        # What would be a negative zero is no number to a VAX.
+        halves[flat == 0] = 0
         return halves.tobytes()

@@ -13,6 +13,7 @@ from mocapstudio.formats.report import Problem
 from mocapstudio.motion.errors import FileError
 
 BLOCK = 512
+_MOST_BLOCKS = 255
 _CHARACTER, _BYTE, _INTEGER, _REAL = -1, 1, 2, 4
 _SIZES = {_CHARACTER: 1, _BYTE: 1, _INTEGER: 2, _REAL: 4}
 _NO_PROCESSORS = {1: 84, 2: 85, 3: 86}
@@ -121,9 +122,8 @@ class _Section:
         self.path, self.data, self.numbers = path, data, numbers
         self.lenient, self.problems = lenient, problems
         self.start = start
-        # The stated number of blocks is often 0 or wrong; it only bounds what is read.
-        blocks = data[start + 2] or 255
-        self.end = min(start + blocks * BLOCK, len(data))
+        # The stated number of blocks is often wrong; no section has more than this.
+        self.end = min(start + _MOST_BLOCKS * BLOCK, len(data))
         self.names: dict[int, str] = {}
         self.found: dict[int, dict[str, Parameter]] = {}
 
@@ -141,13 +141,13 @@ class _Section:
             step = self.numbers.word(self.data, name_end)
             following = name_end + step if step else self.end
             if following > self.end:
-                raise self.fail(name_end, f"{name} points {step} bytes on, past the parameters")
+                raise self.fail(name_end, f"{name[:24]} points {step} bytes on, past the end")
             if step and step < 2:
-                raise self.fail(name_end, f"{name} points {step} bytes on, into itself")
+                raise self.fail(name_end, f"{name[:24]} points {step} bytes on, into itself")
             if group < 0:
                 self.names.setdefault(-group, name)
             else:
-                parameter = self.parameter(name, name_end + 2, following)
+                parameter = self.parameter(name[:24], name_end + 2, following)
                 self.found.setdefault(group, {}).setdefault(name, parameter)
             if not step:
                 break
@@ -202,12 +202,16 @@ class _Section:
 
 
 def decode(raw: bytes) -> str:
-    """Text without the blanks and null bytes that pad it; UTF-8, else Latin-1."""
+    """Text without the blanks and null bytes that pad it; UTF-8, else Latin-1.
+
+    Control characters, which would break a line of a report, become replacement characters.
+    """
     raw = raw.split(b"\x00", 1)[0].strip()
     try:
-        return raw.decode("utf-8")
+        text = raw.decode("utf-8")
     except UnicodeDecodeError:
-        return raw.decode("latin-1")
+        text = raw.decode("latin-1")
+    return text if text.isprintable() else "".join(c if c.isprintable() else "\ufffd" for c in text)
 
 
 def _strings(raw: bytes, shape: tuple[int, ...]) -> tuple[str, ...]:

@@ -137,7 +137,7 @@ def _takes(
     digest = hashlib.sha256(data).hexdigest()
     stated = rate(data, parameters, problems)
     frequency = options.fps or stated
-    events = read_events(data, parameters, layout.first_frame, layout.frames, stated)
+    events = read_events(data, parameters, layout.first_frame, layout.frames, stated, problems)
     takes = []
     for performer, (name, chosen) in enumerate(subjects(markers, parameters, problems)):
         own = np.array(chosen, dtype=np.int64)
