@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from mocapstudio.formats.registry import readable_suffixes
+from mocapstudio.formats.registry import is_take, readable_suffixes
 from mocapstudio.motion.errors import FileError
 
 
@@ -35,11 +35,10 @@ def find_takes(paths: Iterable[Path | str]) -> list[Path]:
 
 
 def _in_folder(folder: Path) -> list[Path]:
-    suffixes = readable_suffixes()
     return sorted(
         path
         for path in folder.rglob("*")
-        if path.suffix.lower() in suffixes
+        if not any(part.startswith(".") for part in path.relative_to(folder).parts)
         and path.is_file()
-        and not any(part.startswith(".") for part in path.relative_to(folder).parts)
+        and is_take(path)
     )

@@ -30,6 +30,8 @@ Writer = Callable[[Take, Sequence[Declared], WriteOptions], Iterator[bytes]]
 MarkerWriter = Callable[[MarkerTake, Sequence[Declared], WriteOptions], Iterator[bytes]]
 
 _SNIFFED = 4096
+# The names of a table's columns can be longer than that.
+_READ_TO_TELL = 1 << 16
 
 
 @dataclass(frozen=True)
@@ -50,6 +52,8 @@ class Format:
         From a take to a file's bytes, or None where the format does not hold joints.
     write_markers
         From a marker take to a file's bytes, or None where the format does not hold markers.
+    common
+        True where files of all sorts have its suffixes, so that in a folder the content tells.
     """
 
     name: str
@@ -58,6 +62,7 @@ class Format:
     read: Reader
     write: Writer | None = None
     write_markers: MarkerWriter | None = None
+    common: bool = False
 
 
 FORMATS = (
@@ -71,6 +76,7 @@ FORMATS = (
         read_csv,
         write_table("csv", ","),
         write_marker_table("csv", ","),
+        common=True,
     ),
     Format(
         "tsv",
@@ -79,6 +85,7 @@ FORMATS = (
         read_tsv,
         write_table("tsv", "\t"),
         write_marker_table("tsv", "\t"),
+        common=True,
     ),
     Format("c3d", (".c3d",), looks_like_c3d, read_c3d, write_markers=write_c3d),
 )
@@ -87,6 +94,24 @@ FORMATS = (
 def readable_suffixes() -> tuple[str, ...]:
     """Suffixes of the files that can be read, lower case, with the dot."""
     return tuple(suffix for one in FORMATS for suffix in one.suffixes)
+
+
+def is_take(path: Path) -> bool:
+    """Tell whether a file in a folder is meant as a take.
+
+    By its suffix; a table whose content is no motion is not.
+    """
+    suffix = path.suffix.lower()
+    one = next((one for one in FORMATS if suffix in one.suffixes), None)
+    if one is None or not one.common:
+        return one is not None
+    try:
+        with path.open("rb") as file:
+            head = file.read(_READ_TO_TELL)
+    except OSError:
+        # Reading it will tell what is wrong with it.
+        return True
+    return any(other.looks_like(head) for other in FORMATS if other.common)
 
 
 def written_suffix(suffix: str) -> str:
