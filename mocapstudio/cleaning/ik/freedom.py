@@ -51,6 +51,11 @@ class Freedom:
         return self.reach > 0
 
     @property
+    def first(self) -> int:
+        """How many unknowns stand before those of the first joint."""
+        return 3 if self.moves else 0
+
+    @property
     def size(self) -> int:
         """Number of unknowns in a frame."""
         return len(self.stiffness)
@@ -74,7 +79,7 @@ class Freedom:
 
     def columns(self, joint: int) -> slice:
         """Where the three unknowns of a joint stand."""
-        at = 3 * self.joints.index(joint) + (3 if self.moves else 0)
+        at = self.first + 3 * self.joints.index(joint)
         return slice(at, at + 3)
 
 
@@ -102,7 +107,7 @@ def freedom(
     at = list(chosen)
     turning = ranges.stiffness[at] if factor is None else ranges.stiffness[at] * factor[at, None]
     place = _ROOT_STIFFNESS if reach > 0 else np.zeros(0)
-    return Freedom(chosen, ranges.axes[at], np.concatenate([place, turning.ravel()]), reach)
+    return Freedom(chosen, np.ascontiguousarray(ranges.axes[at]), np.concatenate([place, turning.ravel()]), reach)
 
 
 def chain(skeleton: Skeleton, joint: int, ranges: JointRanges) -> tuple[int, ...]:

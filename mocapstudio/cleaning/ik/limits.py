@@ -45,12 +45,12 @@ class RangeLimit:
     def rows(self, posed: Posed) -> Rows:
         """Excess (F, 3) and its derivative by the unknowns."""
         local = posed.local(self.joint)
-        away = turns.log(rot.to_matrix(self.mean).T @ local)
+        away, inverse = turns.log(rot.to_matrix(self.mean).T @ local)
         along = away @ self.axes
         excess = along - np.clip(along, self.low, self.high)
-        step = turns.inverse_right_jacobian(away) @ posed.local_partials(self.joint)
-        outside = np.nonzero(excess.any(axis=1))[0]
+        outside = np.flatnonzero(excess.any(axis=1))
+        step = inverse[outside] @ posed.local_partials(self.joint)[outside]
         jacobian = np.zeros((len(outside), 3, posed.freedom.size))
         active = (excess[outside] != 0)[..., None] * self.weight
-        jacobian[:, :, posed.freedom.columns(self.joint)] = active * (self.axes.T @ step[outside])
+        jacobian[:, :, posed.freedom.columns(self.joint)] = active * (self.axes.T @ step)
         return Rows(outside, self.weight * excess[outside], jacobian)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapstudio.cleaning.ik import turns
+from mocapstudio.cleaning.ik import kernels, turns
 from mocapstudio.cleaning.ik.freedom import Freedom
 from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.facing import carrier
@@ -29,7 +29,7 @@ class Window:
     joints
         Indices of the joints that are placed, parents before children.
     parents
-        Position in `joints` of each one's parent, -1 for the root.
+        (j,) position in `joints` of each one's parent, -1 for the root.
     rotations
         (F, j, 3, 3) local rotations.
     offsets
@@ -39,7 +39,7 @@ class Window:
     """
 
     joints: tuple[int, ...]
-    parents: tuple[int, ...]
+    parents: NDArray[np.int64]
     rotations: Array
     offsets: Array
     carrier: int
@@ -61,9 +61,9 @@ def window(take: Take, start: int, end: int, joints: Iterable[int]) -> Window:
     offsets[:, list(take.translated)] = take.translations[start:end]
     return Window(
         tuple(placed),
-        tuple(placed.index(p) if p >= 0 else -1 for p in parents),
-        rot.to_matrix(take.rotations[start:end][:, placed]),
-        offsets[:, placed],
+        np.array([placed.index(p) if p >= 0 else -1 for p in parents], dtype=np.int64),
+        np.ascontiguousarray(rot.to_matrix(take.rotations[start:end][:, placed])),
+        np.ascontiguousarray(offsets[:, placed]),
         placed.index(carries),
     )
 
@@ -85,34 +85,26 @@ class Posed:
         self.window = window
         self.freedom = freedom
         self.unknowns = unknowns
-        first = 3 if freedom.moves else 0
-        along = unknowns[:, first:].reshape(len(unknowns), -1, 3)
-        self._turn = np.einsum("mab,fmb->fma", freedom.axes, along)
-        self._local = window.rotations
-        moving = [window.joints.index(j) for j in freedom.joints]
-        if moving:
-            self._local = window.rotations.copy()
-            self._local[:, moving] = window.rotations[:, moving] @ turns.exp(self._turn)
-        self.positions, self.rotations = self._place()
-        self._gains = self._angular_gains(moving)
-
-    def _place(self) -> tuple[Array, Array]:
-        window = self.window
-        positions, world = np.empty_like(window.offsets), np.empty_like(window.rotations)
-        for at, parent in enumerate(window.parents):
-            if parent < 0:
-                positions[:, at], world[:, at] = window.offsets[:, at], self._local[:, at]
-            else:
-                step = np.einsum("fab,fb->fa", world[:, parent], window.offsets[:, at])
-                positions[:, at] = positions[:, parent] + step
-                world[:, at] = world[:, parent] @ self._local[:, at]
-            if at == window.carrier and self.freedom.moves:
-                positions[:, at] += self.freedom.displacement(self.unknowns)
-        return positions, world
-
-    def _angular_gains(self, moving: list[int]) -> Array:
-        """(F, m, 3, 3): angular velocity in the world that each unknown of a joint gives."""
-        return self.rotations[:, moving] @ turns.right_jacobian(self._turn) @ self.freedom.axes
+        along = unknowns[:, freedom.first :].reshape(len(unknowns), -1, 3)
+        turn, self._jacobian = turns.exp(np.einsum("mab,fmb->fma", freedom.axes, along))
+        moving = np.array([window.joints.index(j) for j in freedom.joints], dtype=np.int64)
+        self._local = window.rotations.copy()
+        kernels.turn_locals(self._local, moving, turn)
+        self.positions = np.empty_like(window.offsets)
+        self.rotations = np.empty_like(window.rotations)
+        displacement = freedom.displacement(unknowns)
+        kernels.place(
+            self._local,
+            window.offsets,
+            window.parents,
+            window.carrier,
+            displacement,
+            self.positions,
+            self.rotations,
+        )
+        # (F, m, 3, 3): angular velocity in the world that each unknown of a joint gives.
+        self._gains = np.empty_like(self._jacobian)
+        kernels.angular_gains(self.rotations, moving, self._jacobian, freedom.axes, self._gains)
 
     def at(self, joint: int) -> int:
         """Position of a joint of the skeleton among those that are placed."""
@@ -131,7 +123,7 @@ class Posed:
     def local_partials(self, joint: int) -> Array:
         """(F, 3, 3): turn in the joint's own frame that each of its own unknowns gives."""
         at = self.freedom.joints.index(joint)
-        result: Array = turns.right_jacobian(self._turn[:, at]) @ self.freedom.axes[at]
+        result: Array = self._jacobian[:, at] @ self.freedom.axes[at]
         return result
 
     def _above(self, joint: int) -> list[int]:
@@ -140,7 +132,7 @@ class Posed:
         at = self.at(joint)
         while at >= 0:
             up.add(self.window.joints[at])
-            at = self.window.parents[at]
+            at = int(self.window.parents[at])
         return [i for i, j in enumerate(self.freedom.joints) if j in up]
 
     def angular_partials(self, joint: int, frames: NDArray[np.int64]) -> Array:
@@ -155,11 +147,16 @@ class Posed:
         result = np.zeros((len(frames), 3, self.freedom.size))
         if self.freedom.moves:
             result[:, :, :3] = self.freedom.displacement_partials(self.unknowns[frames])
-        for i in self._above(joint):
-            turning = self.freedom.joints[i]
-            arm = point - self.positions[frames, self.at(turning)]
-            gain = self._gains[frames, i]
-            result[:, :, self.freedom.columns(turning)] = np.cross(
-                gain, arm[:, :, None], axisa=1, axisb=1, axisc=1
-            )
+        which = self._above(joint)
+        at = np.array([self.at(self.freedom.joints[i]) for i in which], dtype=np.int64)
+        kernels.point_partials(
+            np.ascontiguousarray(point),
+            frames,
+            self.positions,
+            self._gains,
+            np.array(which, dtype=np.int64),
+            at,
+            self.freedom.first,
+            result,
+        )
         return result

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
 
+from mocapstudio.cleaning.ik import kernels
 from mocapstudio.cleaning.ik.freedom import Freedom
 from mocapstudio.cleaning.ik.objectives.rows import Objective, Rows, TimeObjective
 from mocapstudio.cleaning.ik.posed import Posed, Window
@@ -111,7 +112,7 @@ def solve(problem: Problem, start: Array | None = None, most_steps: int = 30) ->
         if move is None:
             damping, growth = damping * growth, growth * 2
             continue
-        expected = 0.5 * float(np.sum(move * (damping * _diagonal(band, move) * move - slope)))
+        expected = 0.5 * float(np.sum(move * (damping * band[:, :, 0] * move - slope)))
         rows = _rows(problem, unknowns + move)
         fall = now - _cost(problem, unknowns + move, rows)
         if fall < 0 and expected > _SETTLED * now:
@@ -163,10 +164,13 @@ def _time_gradient(wish: TimeObjective, unknowns: Array) -> Array:
 
 
 def _time_band(problem: Problem) -> Array:
-    """Lower band (k n + 1, F, n) of what wishes over time add: it never changes."""
+    """(F, n, b) lower band of what wishes over time add: it never changes.
+
+    Element (f, i, k) is row ``i + k`` of column i of frame f, counted on into later frames.
+    """
     frames, size = problem.window.frames, problem.freedom.size
     most = max((len(wish.difference) - 1 for wish in problem.over_time), default=0)
-    band = np.zeros((max(most * size, size - 1) + 1, frames, size))
+    band = np.zeros((frames, size, max(most * size, size - 1) + 1))
     for wish in problem.over_time:
         d = wish.difference
         order = len(d) - 1
@@ -175,39 +179,31 @@ def _time_band(problem: Problem) -> Array:
             for i in range(order + 1 - apart):
                 at = slice(order - i, order - i + frames)
                 gram += d[i, at] * d[i + apart, at]
-            band[apart * size, : frames - apart] += gram[: frames - apart, None] * wish.weights**2
+            gram[frames - apart :] = 0.0
+            band[:, :, apart * size] += gram[:, None] * wish.weights**2
     return band
 
 
 def _normal(
     problem: Problem, fixed: Array, unknowns: Array, rows: Sequence[Rows]
 ) -> tuple[Array, Array]:
-    """Lower band of the normal matrix (b, F n), and the gradient (F, n)."""
-    frames, size = unknowns.shape
-    gradient = np.zeros_like(unknowns)
-    blocks = np.zeros((frames, size, size))
-    for wish in problem.over_time:
-        gradient += _time_gradient(wish, unknowns)
-    for one in rows:
-        across = np.swapaxes(one.jacobian, 1, 2)
-        gradient[one.frames] += (across @ one.residual[..., None])[..., 0]
-        blocks[one.frames] += across @ one.jacobian
+    """Lower band of the normal matrix (F, n, b), and the gradient (F, n)."""
+    slope = np.zeros_like(unknowns)
     band = fixed.copy()
-    for apart in range(size):
-        band[apart, :, : size - apart] += np.diagonal(blocks, -apart, axis1=1, axis2=2)
-    return band.reshape(len(band), frames * size), gradient
+    for wish in problem.over_time:
+        slope += _time_gradient(wish, unknowns)
+    for one in rows:
+        kernels.add_squares(one.frames, one.residual, one.jacobian, slope, band)
+    return band, slope
 
 
-def _diagonal(band: Array, like: Array) -> Array:
-    return band[0].reshape(like.shape)
-
-
-def _damped_step(band: Array, gradient: Array, damping: float) -> Array | None:
-    system = np.array(band, order="F")
-    system[0] *= 1.0 + damping
+def _damped_step(band: Array, slope: Array, damping: float) -> Array | None:
+    system = band.reshape(slope.size, -1).copy()
+    system[:, 0] *= 1.0 + damping
     try:
-        factor = cholesky_banded(system, overwrite_ab=True, lower=True, check_finite=False)
+        # Transposed it is laid out as LAPACK wants it, so that nothing is copied again.
+        factor = cholesky_banded(system.T, overwrite_ab=True, lower=True, check_finite=False)
     except LinAlgError:
         return None
-    step = cho_solve_banded((factor, True), -gradient.ravel(), check_finite=False)
-    return np.asarray(step.reshape(gradient.shape))
+    step = cho_solve_banded((factor, True), -slope.ravel(), check_finite=False)
+    return np.asarray(step.reshape(slope.shape))

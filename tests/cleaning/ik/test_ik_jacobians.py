@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from made_takes import below_a_reference, walking
+from scipy.spatial.transform import Rotation
 
 from mocapstudio.cleaning.ik import turns
 from mocapstudio.cleaning.ik.freedom import Freedom, freedom
@@ -85,7 +86,7 @@ def test_point_at_target(take, free, held, seed):
 def test_orientation(take, free, seed):
     unknowns = drawn(seed, free.size)
     joint = take.skeleton.index["LeftFoot"]
-    target = turns.exp(drawn(seed + 1, 3))
+    target, _ = turns.exp(drawn(seed + 1, 3))
     objective = Orientation(joint, np.arange(FRAMES), target, np.full(FRAMES, 3.0))
     agrees(objective, take, free, unknowns)
     expected = naive_ik.orientation_residual(
@@ -157,12 +158,26 @@ def test_free_ends_leave_out_the_rows_that_join(take, free):
     assert of() == pytest.approx(0.5 * 4 * free.size)
 
 
-@given(seed=seeds)
+@given(seed=seeds, size=st.sampled_from([1e-7, 1e-3, 0.5, 1.5]))
 @settings(max_examples=20)
-def test_inverse_right_jacobian(seed):
+def test_turns(seed, size):
     v = np.random.default_rng(seed).normal(size=(5, 3))
-    product = turns.right_jacobian(v) @ turns.inverse_right_jacobian(v)
-    np.testing.assert_allclose(product, np.broadcast_to(np.eye(3), product.shape), atol=1e-9)
+    v *= size / np.abs(v).max(axis=1, keepdims=True)
+    turn, jacobian = turns.exp(v)
+    np.testing.assert_allclose(turn, Rotation.from_rotvec(v).as_matrix(), atol=1e-12)
+    back, inverse = turns.log(turn)
+    np.testing.assert_allclose(back, v, atol=1e-9)
+    np.testing.assert_allclose(inverse @ jacobian, np.tile(np.eye(3), (5, 1, 1)), atol=1e-9)
+    step = np.random.default_rng(seed + 1).normal(size=(5, 3)) * 1e-6
+    ahead, _ = turns.log(np.swapaxes(turn, 1, 2) @ turns.exp(v + step)[0])
+    np.testing.assert_allclose(ahead, (jacobian @ step[..., None])[..., 0], atol=1e-10)
+
+
+@pytest.mark.parametrize("axis", [[1, 0, 0], [0, 1, 0], [0, 0, 1], [0.6, 0, 0.8]])
+def test_half_turns(axis):
+    v = (np.pi - 1e-7) * np.array([axis], dtype=float)
+    back, _ = turns.log(turns.exp(v)[0])
+    np.testing.assert_allclose(back, v, atol=1e-6)
 
 
 def test_body_below_a_turned_reference_moves_in_the_world(take):

@@ -40,7 +40,7 @@ class Orientation:
     def rows(self, posed: Posed) -> Rows:
         """Rotation vectors (m, 3) from the target, and their derivative."""
         world = posed.rotations[self.frames, posed.at(self.joint)]
-        away = turns.log(np.swapaxes(self.target, 1, 2) @ world)
+        away, inverse = turns.log(np.swapaxes(self.target, 1, 2) @ world)
         partials = posed.angular_partials(self.joint, self.frames)
-        step = turns.inverse_right_jacobian(away) @ np.swapaxes(world, 1, 2) @ partials
+        step = inverse @ np.swapaxes(world, 1, 2) @ partials
         return Rows(self.frames, self.weight[:, None] * away, self.weight[:, None, None] * step)
