@@ -24,6 +24,7 @@ COMMANDS = {
     "inspect": "Read files and report what is in them, and what was wrong.",
     "detect": "Find what is wrong in takes and how badly.",
     "clean": "Repair all that is found in takes, and write them.",
+    "contacts": "Find or read contacts, measure foot skate, remove it.",
     "convert": "Write a take in another format.",
     "export": "Write what was decided in a session, without the desk.",
     "report": "Write a session's report.",

@@ -129,7 +129,9 @@ def contacts_record(
     }
 
 
-def read_contacts(path: Path | str, take: Take) -> ContactsFile:
+def read_contacts(
+    path: Path | str, take: Take, points: Sequence[ContactPoint] | None = None
+) -> ContactsFile:
     """Read the contacts of a take.
 
     Parameters
@@ -138,6 +140,9 @@ def read_contacts(path: Path | str, take: Take) -> ContactsFile:
         The file; frames at another rate than the take's are converted.
     take
         Whose contacts they are: joints and frames must be its own.
+    points
+        Those the performer has beside the file's; a contact of any other is an error. None lets
+        every contact pass.
 
     Raises
     ------
@@ -150,9 +155,12 @@ def read_contacts(path: Path | str, take: Take) -> ContactsFile:
     if not isinstance(content, dict) or not isinstance(content.get("contacts"), list):
         raise FileError(path, 'holds no contacts: an object with a list "contacts" is wanted')
     scale = _scale(path, content, take)
-    points = _each(path, text, content, "points", lambda one, _: to_point(one, take))
-    found = _each(path, text, content, "contacts", lambda one, i: to_contact(one, i, take, scale))
-    return ContactsFile(_renamed(found), tuple(points))
+    named = _each(path, text, content, "points", lambda one, _: to_point(one, take))
+    known = None if points is None else {point.key for point in (*points, *named)}
+    found = _each(
+        path, text, content, "contacts", lambda one, i: to_contact(one, i, take, scale, known)
+    )
+    return ContactsFile(_renamed(found), tuple(named))
 
 
 def _parsed(path: Path) -> tuple[str, Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any, get_args
 
 import numpy as np
@@ -72,7 +72,13 @@ def to_point(one: Mapping[str, Any], take: Take) -> ContactPoint:
     return ContactPoint(_joint(one, take), _name(one), np.array(_vector(one, "offset")))
 
 
-def to_contact(one: Mapping[str, Any], number: int, take: Take, scale: float) -> Contact:
+def to_contact(
+    one: Mapping[str, Any],
+    number: int,
+    take: Take,
+    scale: float,
+    known: Collection[tuple[str, Point | None]] | None = None,
+) -> Contact:
     """Return the contact of a record.
 
     Parameters
@@ -83,6 +89,8 @@ def to_contact(one: Mapping[str, Any], number: int, take: Take, scale: float) ->
         Joint and frames must be its own.
     scale
         Frames of the take a frame of the record.
+    known
+        Joint and name of the points there are; None for any.
 
     Raises
     ------
@@ -94,6 +102,9 @@ def to_contact(one: Mapping[str, Any], number: int, take: Take, scale: float) ->
         end = min(max(end, start + 1), max(take.frames, end - 1))
     if not 0 <= start < end <= take.frames:
         raise WrongRecordError(f"has frames {start}:{end}, none of the take's {take.frames}")
+    key = (_joint(one, take), _name(one))
+    if known is not None and key[1] is not None and key not in known:
+        raise WrongRecordError(f"is of a {key[1]} that joint {key[0]} does not have")
     confidence = one.get("confidence", 1.0)
     if isinstance(confidence, bool) or not isinstance(confidence, int | float):
         raise WrongRecordError('has a "confidence" that is no number')
@@ -104,8 +115,7 @@ def to_contact(one: Mapping[str, Any], number: int, take: Take, scale: float) ->
         raise WrongRecordError('has an "id" that is no text')
     return Contact(
         name,
-        _joint(one, take),
-        _name(one),
+        *key,
         start,
         end,
         _target(one),

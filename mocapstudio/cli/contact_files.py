@@ -1,0 +1,127 @@
+"""A take with its contacts as the command line names them, and the clean-up of it."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from mocapstudio.cleaning.contacts.detection import detecting
+from mocapstudio.cleaning.contacts.files import contacts_record, read_contacts
+from mocapstudio.cleaning.contacts.model import Contact, ContactPoint
+from mocapstudio.cleaning.contacts.points import contact_points
+from mocapstudio.cli.progress import run
+from mocapstudio.cli.take_files import Workload
+from mocapstudio.cli.take_options import TakeOptions
+from mocapstudio.motion.errors import FileError
+from mocapstudio.motion.take import Take
+
+if TYPE_CHECKING:
+    from mocapstudio.cleaning.ik.foot_skate import SkateResult
+    from mocapstudio.cleaning.ik.targets import Hold
+    from mocapstudio.review.document import Document
+
+_SHOWN = 5
+
+
+@dataclass(frozen=True, eq=False)
+class Touching:
+    """A take, what may touch, what does, and whom.
+
+    Parameters
+    ----------
+    path, take
+        The performer.
+    contacts, points
+        Theirs.
+    others
+        Takes of partners and props, by name.
+    """
+
+    path: Path
+    take: Take
+    contacts: tuple[Contact, ...]
+    points: tuple[ContactPoint, ...]
+    others: Mapping[str, Take]
+
+    def record(self) -> dict[str, Any]:
+        """Return what the JSON tells of them."""
+        record = contacts_record(self.take, self.contacts, self.points, self.others)
+        return record | {"take": str(self.path), "frames": self.take.frames}
+
+    def laid(self) -> tuple[Hold, ...]:
+        """Return the contacts laid out over the take."""
+        from mocapstudio.cleaning.ik.targets import holds
+
+        return holds(self.take, self.contacts, self.points, self.others)
+
+
+def touching(
+    path: Path, partners: Sequence[Path], contacts: Path | None, reading: TakeOptions
+) -> Touching:
+    """Read a take, its partners and its contacts; without a file of contacts they are found.
+
+    Raises
+    ------
+    FileError
+        If a file cannot be read, or does not fit the take.
+    """
+    work = Workload(reading)
+    takes = [*work.read(path), *(one for p in partners for one in work.read(p))]
+    if not takes:
+        raise FileError(path, "holds no motion of a skeleton")
+    take, others = takes[0], {one.name: one for one in takes[1:]}
+    points = contact_points(take)
+    if contacts is not None:
+        return Touching(path, take, *with_file(take, contacts, points), others)
+    found = run(detecting(take, others, points), "contacts")
+    return Touching(path, take, found, points, others)
+
+
+def with_file(
+    take: Take, path: Path, points: Sequence[ContactPoint]
+) -> tuple[tuple[Contact, ...], tuple[ContactPoint, ...]]:
+    """Return contacts and contact points of a file; points it does not name stay as they were."""
+    file = read_contacts(path, take, points)
+    adjusted = {point.key: point for point in (*points, *file.points)}
+    return file.contacts, tuple(adjusted.values())
+
+
+def held(scene: Touching) -> tuple[SkateResult, Document, str]:
+    """Hold every contact; returns the result, and a document with it as edits of a performer."""
+    from mocapstudio.review.document import Document
+
+    document = Document()
+    performer = document.open_take(scene.take)
+    return hold(document, scene), document, performer
+
+
+def hold(document: Document, scene: Touching) -> SkateResult:
+    """Hold every contact of the active performer; what cannot be reached is told on standard error.
+
+    Parameters
+    ----------
+    scene
+        Its take is the document's result so far.
+    """
+    from mocapstudio.cleaning.contacts.changes import as_proposals
+    from mocapstudio.cleaning.ik.foot_skate import clean
+
+    work = clean(scene.take, scene.contacts, scene.points, others=scene.others)
+    result = run(work, "contacts")
+    with document.group("Hold contacts"):
+        for proposal in as_proposals(result.take, result.declared):
+            document.add_edit(proposal, "Hold contacts")
+    worst = sorted(result.unreached, key=lambda one: -one.millimetres)
+    for one in worst[:_SHOWN]:
+        print(
+            f"warning: {scene.path}: contact {one.contact}: {one.millimetres:.1f} mm out of reach"
+            f" in {one.frames} frames",
+            file=sys.stderr,
+        )
+    if len(worst) > _SHOWN:
+        more = len(worst) - _SHOWN
+        print(f"warning: {scene.path}: {more} more out of reach", file=sys.stderr)
+    return result
