@@ -17,20 +17,20 @@ Array = NDArray[np.float64]
 
 _FLOOR_SPEED = 0.01
 """Share of the leg a second that is never told from rest."""
-_DWELL = 0.45
+_DWELL = 0.15
 """Seconds that a state lasts on average."""
 _LEARNING_RATE = 30.0
 """Frames a second at which neighbouring frames are taken to tell something new."""
-_PRIOR_FRAMES = 50.0
+_PRIOR_FRAMES = 20.0
 """How many frames what is usual weighs."""
 _ROUNDS = 4
 _MOST = 12.0
 """No single frame speaks louder than this."""
-_ANYWHERE = 0.1
+_ANYWHERE = 0.07
 """Share of free points that are anywhere up to a leg above the floor."""
 _SUNK_LEAST, _SUNK_MOST = 0.004, 0.04
 """Of `sunk`, in legs."""
-_OPEN = 0.8
+_OPEN = 0.5
 """Learning begins with contacts that may be faster than usual by this, in log speed."""
 _WIDEST, _NARROWEST = 1.3, 0.4
 
@@ -70,8 +70,8 @@ class Emissions:
         return np.clip(ratio, -_MOST, _MOST)
 
 
-_USUAL = Emissions(-3.6, 0.8, 0.2, 1.15, 0.007, 0.04)
-_USUAL_HEEL = Emissions(-3.8, 0.7, 0.1, 1.15, 0.008, 0.035)
+_USUAL = Emissions(-4.0, 1.0, 0.45, 0.95, 0.010, 0.036)
+_USUAL_HEEL = Emissions(-4.0, 0.6, 0.25, 0.8, 0.0045, 0.017)
 
 
 def usual(point: str | None) -> Emissions:
