@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from mocapstudio.cleaning.contacts.anatomy import extremities, leg_length
 from mocapstudio.cleaning.contacts.floor import fit_floor
 from mocapstudio.cleaning.contacts.model import Contact, ContactPoint, Floor, Target
+from mocapstudio.cleaning.contacts.partners import held_by
 from mocapstudio.cleaning.contacts.points import contact_points, point_positions
 from mocapstudio.cleaning.contacts.speeds import one_sided, runs, smoothed
 from mocapstudio.cleaning.contacts.states import learnt, log_speed, posterior, usual
@@ -87,6 +88,14 @@ def detecting(
             height = float(np.median(positions[start:end, column, 1]))
             sure = float(probability[start:end, column].mean())
             found.append(_contact(point, start, end, Floor(height, normal), sure))
+    others = partners if isinstance(partners, Mapping) else {one.name: one for one in partners}
+    if others:
+        yield Progress(0.9, "hands of partners")
+        for held in held_by(take, chosen, positions, others):
+            point = chosen[held.point]
+            own = [c for c in drawn if (c.joint, c.point) == point.key]
+            if not any(c.start < held.end and held.start < c.end for c in own):
+                found.append(_contact(point, held.start, held.end, held.target, held.confidence))
     return _in_order(drawn, found)
 
 
