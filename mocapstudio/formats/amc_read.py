@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapstudio.formats.amc_rows import Body, parse_frames
-from mocapstudio.formats.amc_take import lay_out, motion
+from mocapstudio.formats.amc_take import Layout, lay_out, motion
 from mocapstudio.formats.asf_find import find_skeleton
 from mocapstudio.formats.asf_read import Angles, Asf, read_asf
 from mocapstudio.formats.asf_text import plain_lines
@@ -37,10 +37,27 @@ _FIRST_FRAME = re.compile(rb"^[ \t]*\d+[ \t]*$", re.MULTILINE)
 
 @dataclass(frozen=True, eq=False)
 class AmcRecord:
-    """What stands beside the numbers: the skeleton's file and the unit of the angles."""
+    """What the writer needs to copy a take's text.
 
+    Attributes
+    ----------
+    data
+        The whole file.
+    line
+        1-based line of its first frame.
+    asf
+        The skeleton's file.
+    layout
+        How values move that skeleton.
+    values
+        (F, values) as read, of each bone that has any.
+    """
+
+    data: bytes
+    line: int
     asf: Asf
-    angles: Angles
+    layout: Layout
+    values: dict[str, Array]
 
 
 @dataclass
@@ -56,7 +73,7 @@ def looks_like_amc(head: bytes) -> bool:
 
 
 def read_amc(path: Path, data: bytes, options: ReadOptions) -> tuple[list[Take], ImportReport]:
-    """Read an AMC with the ASF beside it (see `find_skeleton`).
+    """Read an AMC with the ASF that the options name, or the one beside it (`find_skeleton`).
 
     Raises
     ------
@@ -70,7 +87,7 @@ def read_amc(path: Path, data: bytes, options: ReadOptions) -> tuple[list[Take],
     header = _header(plain[: start.start() if start else len(plain)].decode(encoding), path)
     if start is None:
         raise FileError(path, "not AMC, or cut off: no line holds a frame number")
-    asf = read_asf(find_skeleton(path), problems)
+    asf = read_asf(options.skeleton or find_skeleton(path), problems)
     channels = {bone.name: len(bone.dof) for bone in (*asf.bones, *asf.loose) if bone.dof}
     if not channels:
         raise FileError(asf.path, "no bone has a degree of freedom")
@@ -79,22 +96,26 @@ def read_amc(path: Path, data: bytes, options: ReadOptions) -> tuple[list[Take],
     problems += header.problems
     first, values = parse_frames(body, problems)
     angles = _angles(asf, header, options, problems)
-    take = _take(path, asf, values, angles, options)
+    layout = _layout(asf, angles, options)
+    rotations, translations = motion(layout, values)
+    skeleton = layout.skeleton
+    up = _up(layout, rotations, translations, options, problems)
     source = Source(
         path,
         "amc",
-        hashlib.sha256(data).hexdigest(),
-        _unit(asf, take.skeleton, options, problems),
-        turn_to_inside(_up(take, options, problems), options.forward),
-        record=AmcRecord(asf, angles),
+        # The same motion on another skeleton is another take.
+        hashlib.sha256(data + asf.data).hexdigest(),
+        _unit(asf, skeleton, options, problems),
+        turn_to_inside(up, options.forward),
+        record=AmcRecord(data, line, asf, layout, values),
     )
     take = Take(
         name=path.stem,
-        skeleton=in_metres(take.skeleton, source.unit),
-        rotations=take.rotations,
-        translations=turn_inside(take.rotations, take.translations, source),
+        skeleton=in_metres(skeleton, source.unit),
+        rotations=rotations,
+        translations=turn_inside(rotations, translations, source),
         rate=_rate(header, options, problems),
-        translated=take.translated,
+        translated=layout.translated,
         first_frame=first,
         source=source,
     )
@@ -134,18 +155,9 @@ def _angles(asf: Asf, header: _Header, options: ReadOptions, problems: list[Prob
     return options.angles
 
 
-def _take(
-    path: Path,
-    asf: Asf,
-    values: dict[str, Array],
-    angles: Angles,
-    options: ReadOptions,
-) -> Take:
-    """Lay the take out in the file's unit and axes."""
+def _layout(asf: Asf, angles: Angles, options: ReadOptions) -> Layout:
     axes = asf.angles or options.angles
-    layout = lay_out(asf, radians=angles == "radians", axes_in_radians=axes == "radians")
-    rotations, translations = motion(layout, values)
-    return Take(path.stem, layout.skeleton, rotations, translations, _USUAL_RATE, layout.translated)
+    return lay_out(asf, radians=angles == "radians", axes_in_radians=axes == "radians")
 
 
 def _unit(asf: Asf, skeleton: Skeleton, options: ReadOptions, problems: list[Problem]) -> float:
@@ -161,10 +173,16 @@ def _unit(asf: Asf, skeleton: Skeleton, options: ReadOptions, problems: list[Pro
     return unit
 
 
-def _up(take: Take, options: ReadOptions, problems: list[Problem]) -> Up:
+def _up(
+    layout: Layout,
+    rotations: Array,
+    translations: Array,
+    options: ReadOptions,
+    problems: list[Problem],
+) -> Up:
     if options.up is not None:
         return options.up
-    up, why = guess_up(take.skeleton, take.rotations, take.translations, take.translated)
+    up, why = guess_up(layout.skeleton, rotations, translations, layout.translated)
     done = f"guessed {up.upper()} up ({why})"
     problems.append(Problem(None, "no up axis stated", done, "up", guess=True))
     return up

@@ -30,5 +30,5 @@ def find_skeleton(path: Path) -> Path:
         raise FileError(path, "no skeleton: there is no .asf beside it")
     if len(candidates) > 1:
         names = ", ".join(p.name for p in candidates)
-        raise FileError(path, f"several skeletons might be its own: {names}")
+        raise FileError(path, f"several skeletons might be its own, name one of: {names}")
     return candidates[0]

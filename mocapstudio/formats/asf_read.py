@@ -71,6 +71,8 @@ class Asf:
         The stated length scale, or None.
     angles
         The stated unit of angles, or None.
+    data
+        The whole file.
     """
 
     path: Path
@@ -79,6 +81,7 @@ class Asf:
     loose: tuple[Bone, ...]
     scale: float | None
     angles: Angles | None
+    data: bytes
 
 
 def read_asf(path: Path, problems: list[Problem]) -> Asf:
@@ -117,7 +120,7 @@ def read_asf(path: Path, problems: list[Problem]) -> Asf:
         if "l" in bones[name].dof:
             what = f"the length of bone {name} changes"
             problems.append(Problem(bones[name].line, what, "ignored: it keeps its length"))
-    return Asf(path, tuple(bones[n] for n in ordered), tuple(parents), loose, scale, angles)
+    return Asf(path, tuple(bones[n] for n in ordered), tuple(parents), loose, scale, angles, data)
 
 
 def _units(section: Section | None, path: Path) -> tuple[float | None, Angles | None]:

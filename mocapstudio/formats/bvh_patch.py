@@ -14,7 +14,7 @@ from mocapstudio.formats.bvh_motion import parse_motion
 from mocapstudio.formats.bvh_read import BvhRecord, in_metres, turn_inside
 from mocapstudio.formats.bvh_rows import MotionBlock
 from mocapstudio.formats.bvh_take import motion
-from mocapstudio.formats.changes import Changes, changes, undeclared
+from mocapstudio.formats.changes import Changes, changes, runs, undeclared
 from mocapstudio.formats.euler import nearest_euler
 from mocapstudio.formats.frame_time import frame_time, stated_rate
 from mocapstudio.formats.reading import Reading
@@ -97,7 +97,7 @@ def _rotation_cells(
     for j in np.flatnonzero(changed.rotations.any(axis=0)):
         joint = layout.hierarchy.joints[j]
         columns = list(joint.rotations)
-        for start, end in _runs(changed.rotations[:, j]):
+        for start, end in runs(changed.rotations[:, j]):
             q = take.rotations[start:end, j]
             if j == 0:
                 q = rot.multiply(rot.conjugate(source.to_inside), q)
@@ -128,11 +128,6 @@ def _translation_cells(take: Take, source: Source, changed: Changes, cells: Cell
                     cells.setdefault(int(row), {})[column] = float(value)
             elif not np.allclose(moved[:, axis], joint.offset[axis], atol=1e-6):
                 raise MocapError(f"joint {joint.name} has no {'XYZ'[axis]} position channel")
-
-
-def _runs(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
-    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
 
 
 class _Text:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from fractions import Fraction
+from pathlib import Path
 from typing import Literal
 
 from mocapstudio.motion.errors import ParameterError
@@ -39,6 +40,8 @@ class ReadOptions:
         Trim rows of a synthetic T-pose before the motion.
     lenient
         Read the whole rows that are there where a file states another number of frames.
+    skeleton
+        The ASF of an AMC, where it is not the one that its name or folder tells.
     """
 
     fps: Fraction | None = None
@@ -49,6 +52,7 @@ class ReadOptions:
     root_offset: Literal["replace", "add"] = "replace"
     trim_start: bool = True
     lenient: bool = False
+    skeleton: Path | None = None
 
 
 @dataclass(frozen=True)

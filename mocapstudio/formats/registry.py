@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mocapstudio.formats.amc_read import looks_like_amc, read_amc
+from mocapstudio.formats.amc_write import asf_beside, write_amc
 from mocapstudio.formats.atomic import write_whole
 from mocapstudio.formats.bvh_read import looks_like_bvh, read_bvh
 from mocapstudio.formats.bvh_write import write_bvh
@@ -52,6 +53,8 @@ class Format:
         From a take to a file's bytes, or None where the format does not hold joints.
     write_markers
         From a marker take to a file's bytes, or None where the format does not hold markers.
+    beside
+        Further files, with their bytes, without which a take written to a path cannot be read.
     common
         True where files of all sorts have its suffixes, so that in a folder the content tells.
     """
@@ -62,12 +65,13 @@ class Format:
     read: Reader
     write: Writer | None = None
     write_markers: MarkerWriter | None = None
+    beside: Callable[[Take, Path], dict[Path, bytes]] | None = None
     common: bool = False
 
 
 FORMATS = (
     Format("bvh", (".bvh",), looks_like_bvh, read_bvh, write_bvh),
-    Format("amc", (".amc",), looks_like_amc, read_amc),
+    Format("amc", (".amc",), looks_like_amc, read_amc, write_amc, beside=asf_beside),
     Format("trc", (".trc",), looks_like_trc, read_trc, write_markers=write_trc),
     Format(
         "csv",
@@ -193,7 +197,17 @@ def write(
     path = Path(path)
     own = [take.source.path] if take.source is not None else []
     pieces = _pieces(take, path, declared, options or WriteOptions())
+    companions = _companions(take, path)
     write_whole(path, pieces, inputs=[*own, *inputs])
+    for companion, data in companions.items():
+        write_whole(companion, [data], inputs=[*own, *inputs])
+
+
+def _companions(take: Recording, path: Path) -> dict[Path, bytes]:
+    for one in FORMATS:
+        if path.suffix.lower() in one.suffixes and one.beside and isinstance(take, Take):
+            return one.beside(take, path)
+    return {}
 
 
 def _pieces(

@@ -25,7 +25,8 @@ class Source:
     format
         Short name of the format, such as ``"bvh"``.
     digest
-        SHA-256 of the file's bytes, hexadecimal.
+        SHA-256 of the file's bytes, and of those of its skeleton where that is a file of its own,
+        hexadecimal.
     unit
         Metres per unit of the file.
     to_inside

@@ -150,15 +150,12 @@ class Finder:
         if path is None:
             return Found(None, f"{record.absolute} is missing")
         try:
-            digest = hashlib.sha256(path.read_bytes()).hexdigest()
             take = _read_alike(path, record)
-        except OSError as error:
-            return Found(None, f"{path} cannot be read: {error.strerror or error}")
         except MocapError as error:
             return Found(None, str(error))
-        changed = digest != record.digest
         if take is None:
             return Found(None, f"{path} holds another take than the one in this session")
+        changed = _digest_of(take) != record.digest
         note = f"{path} has changed since the session was saved" if changed else None
         return Found(take, note)
 

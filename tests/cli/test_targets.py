@@ -23,9 +23,15 @@ def take(name: str) -> Take:
 
 @pytest.mark.parametrize(
     ("name", "written"),
-    [("a.bvh", "a.bvh"), ("a.b.BVH", "a.b.BVH"), ("05_13.amc", "05_13.bvh"), ("a", "a.bvh")],
+    [
+        ("a.bvh", "a.bvh"),
+        ("a.b.BVH", "a.b.BVH"),
+        ("05_13.amc", "05_13.amc"),
+        ("05_13.c3d", "05_13.bvh"),
+        ("a", "a.bvh"),
+    ],
 )
-def test_formats_that_are_only_read_become_bvh_in_a_folder(
+def test_formats_that_hold_no_joints_become_bvh_in_a_folder(
     tmp_path: Path, name: str, written: str
 ) -> None:
     path = tmp_path / name
@@ -34,8 +40,8 @@ def test_formats_that_are_only_read_become_bvh_in_a_folder(
 
 
 def test_two_takes_are_not_written_to_one_file(tmp_path: Path) -> None:
-    paths = [tmp_path / "a.bvh", tmp_path / "a.amc"]
+    paths = [tmp_path / "a.bvh", tmp_path / "a.c3d"]
     targets = Targets(tmp_path / "clean", paths, paths)
     targets.of(paths[0], take("a"), alone=True)
-    with pytest.raises(FileError, match=r"a\.amc.*would replace"):
+    with pytest.raises(FileError, match=r"a\.c3d.*would replace"):
         targets.of(paths[1], take("a"), alone=True)

@@ -1,0 +1,73 @@
+"""AMC: from a take to a file's bytes, on the skeleton that it was read with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from mocapstudio.formats.amc_cells import as_read, frame_cells
+from mocapstudio.formats.amc_read import AmcRecord
+from mocapstudio.formats.amc_text import AmcText
+from mocapstudio.formats.asf_find import find_skeleton
+from mocapstudio.formats.changes import changes, undeclared
+from mocapstudio.formats.options import WriteOptions
+from mocapstudio.motion.declared import Declared
+from mocapstudio.motion.errors import FileError, MocapError
+from mocapstudio.motion.take import Take
+
+
+def write_amc(take: Take, declared: Sequence[Declared], options: WriteOptions) -> Iterator[bytes]:
+    """Bytes of the take as AMC: its source's, but for the cells of changed samples.
+
+    AMC holds angles about the axes of a skeleton in an ASF, in the ASF's unit and directions. So a
+    take can be written that was read from AMC, whole or trimmed.
+
+    Raises
+    ------
+    MocapError
+        If a sample changed without being declared, if the take has no ASF behind it, if another
+        layout is asked for than the ASF's, or if a bone lacks the axes for a changed rotation.
+    """
+    source = take.source
+    if source is None or source.format != "amc":
+        raise MocapError(
+            f"{take.name}: AMC holds takes that were read from AMC, on their own ASF; write BVH"
+        )
+    if options.relayout:
+        raise MocapError(f"{take.name}: AMC has the joints, frames, unit and axes of its source")
+    record: AmcRecord = source.record
+    changed = changes(take, as_read(source))
+    beyond = undeclared(take, changed, declared)
+    if beyond is not None:
+        raise MocapError(f"{take.name}: changed without being declared: {beyond}")
+    span = take.trim if options.trim else None
+    if span is None and not changed.rotations.any() and not changed.translations.any():
+        yield record.data
+        return
+    text = AmcText(record)
+    cells = frame_cells(take, source, changed)
+    yield from text.spliced(cells, span or (0, take.frames))
+
+
+def asf_beside(take: Take, path: Path) -> dict[Path, bytes]:
+    """Return the ASF that an AMC at `path` needs beside it, unless the reader finds it there.
+
+    Raises
+    ------
+    FileError
+        If another skeleton lies at its place.
+    """
+    source = take.source
+    if source is None or source.format != "amc":
+        return {}
+    record: AmcRecord = source.record
+    try:
+        found = find_skeleton(path).read_bytes()
+    except (FileError, OSError):
+        found = b""
+    if found == record.asf.data:
+        return {}
+    target = path.with_name(record.asf.path.name)
+    if target.exists() and target.read_bytes() != record.asf.data:
+        raise FileError(target, "is another skeleton than that of the take to be written beside it")
+    return {target: record.asf.data}
