@@ -170,7 +170,7 @@ def _solve_window(
         start = solution.unknowns
         if weight < windows.CONTACT_WEIGHTS[-1]:
             posed = problem.posed(start)
-            reached = [posed.point(h.joint, h.offset)[h.frames - span[0]] for h in inside]
+            reached = [posed.point(h.joint, h.offset, h.frames - span[0]) for h in inside]
             inside = [chosen_again(h, place) for h, place in zip(inside, reached, strict=True)]
     return Departure(span, problem, solution.unknowns), inside
 

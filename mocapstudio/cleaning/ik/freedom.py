@@ -14,7 +14,7 @@ from mocapstudio.motion.topology import topology
 
 Array = NDArray[np.float64]
 
-_ROOT_STIFFNESS = np.array([20.0, 8.0, 20.0])
+_ROOT_STIFFNESS = np.array([200.0, 100.0, 200.0])
 """Per metre, against 1 per radian of a joint that turns as widely as a hip: the hips give way
 where a leg is nearly straight, and hardly elsewhere."""
 
@@ -107,7 +107,12 @@ def freedom(
     at = list(chosen)
     turning = ranges.stiffness[at] if factor is None else ranges.stiffness[at] * factor[at, None]
     place = _ROOT_STIFFNESS if reach > 0 else np.zeros(0)
-    return Freedom(chosen, np.ascontiguousarray(ranges.axes[at]), np.concatenate([place, turning.ravel()]), reach)
+    return Freedom(
+        chosen,
+        np.ascontiguousarray(ranges.axes[at]),
+        np.concatenate([place, turning.ravel()]),
+        reach,
+    )
 
 
 def chain(skeleton: Skeleton, joint: int, ranges: JointRanges) -> tuple[int, ...]:

@@ -110,10 +110,11 @@ class Posed:
         """Position of a joint of the skeleton among those that are placed."""
         return self.window.joints.index(joint)
 
-    def point(self, joint: int, offset: Array) -> Array:
-        """(F, 3) metres: a point in the frame of `joint`, in the world."""
+    def point(self, joint: int, offset: Array, frames: NDArray[np.int64] | None = None) -> Array:
+        """(m, 3) metres in the world: a point in the frame of `joint`, at some frames or all."""
         at = self.at(joint)
-        result: Array = self.positions[:, at] + self.rotations[:, at] @ offset
+        which = slice(None) if frames is None else frames
+        result: Array = self.positions[which, at] + self.rotations[which, at] @ offset
         return result
 
     def local(self, joint: int) -> Array:

@@ -51,10 +51,7 @@ def slide(before: Take, after: Take, holds: Sequence[Hold]) -> Slide:
 
 
 def _speeds(take: Take, holds: Sequence[Hold]) -> Array:
-    speeds = [
-        hold.steps(place)
-        for hold, place in zip(holds, places(take, holds), strict=True)
-    ]
+    speeds = [hold.steps(place) for hold, place in zip(holds, places(take, holds), strict=True)]
     # Contacts of a single frame do not slide.
     return np.concatenate([*speeds, np.zeros(1)] if not any(map(len, speeds)) else speeds) * float(
         take.rate

@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 
 _SETTLED = 1e-3
 """Relative fall of the cost below which a solution is settled."""
-_FIRST_DAMPING = 1e-8
+_FIRST_DAMPING = 1e-6
 
 
 @dataclass(frozen=True, eq=False)

@@ -215,6 +215,8 @@ def _freed_along(take: Take, laid: Sequence[Hold]) -> tuple[Hold, ...]:
 def _together(take: Take, hold: Hold, other: Hold) -> NDArray[np.bool_]:
     """(m,) frames of `hold` in which `other`, a point of the same foot, is in contact too."""
     up = take.skeleton.parents
-    near = hold.joint == other.joint or other.joint == up[hold.joint] or hold.joint == up[other.joint]
+    near = (
+        hold.joint == other.joint or other.joint == up[hold.joint] or hold.joint == up[other.joint]
+    )
     within = (hold.frames >= other.contact.start) & (hold.frames < other.contact.end)
     return within & near

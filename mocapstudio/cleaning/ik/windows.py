@@ -25,7 +25,7 @@ from mocapstudio.motion.topology import topology
 
 Array = NDArray[np.float64]
 
-CONTACT_WEIGHTS = (1e3, 5e3, 5e4)
+CONTACT_WEIGHTS = (2e3, 5e4)
 """Per metre, growing: at first contacts on one foot find places that agree, at last they hold."""
 _LIMIT_WEIGHT = 30.0
 _TURN_WEIGHT = 2.0

@@ -13,6 +13,7 @@ Array = NDArray[np.float64]
 
 _WITHIN = 0.1
 
+
 @dataclass(frozen=True, eq=False)
 class KeepPose:
     """Every unknown stays near the departure that is wanted, by default none.

@@ -43,7 +43,7 @@ class PointAtTarget:
 
     def rows(self, posed: Posed) -> Rows:
         """Distance from the target (m, r) and its derivative."""
-        point = posed.point(self.joint, self.offset)[self.frames]
+        point = posed.point(self.joint, self.offset, self.frames)
         scaled = self.weight * self.projection
         partials = posed.point_partials(self.joint, point, self.frames)
         away = (scaled @ (point - self.target)[..., None])[..., 0]
