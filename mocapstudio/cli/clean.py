@@ -15,6 +15,8 @@ from mocapstudio.motion.errors import MocapError
 
 if TYPE_CHECKING:
     from mocapstudio.cleaning.analysis import Analysis
+    from mocapstudio.cleaning.model import Flag
+    from mocapstudio.cli.contact_files import Touching
     from mocapstudio.review.document import Document
 
 OutPath = Annotated[
@@ -30,6 +32,15 @@ def clean(
     takes: Annotated[list[Path], typer.Argument(metavar="TAKE...", help="Files or folders.")],
     out: OutPath,
     context: Context = None,
+    contacts: Annotated[
+        Path | None,
+        typer.Option(
+            "--contacts",
+            metavar="FILE",
+            help="Contacts to keep, as `contacts --contacts-out` writes them; for several takes a"
+            " folder with a file of each take's name, such as 05_02.json.",
+        ),
+    ] = None,
     threshold: Threshold = None,
     mode: ModeOption = None,
     quick: Quick = False,
@@ -40,9 +51,10 @@ def clean(
     """Repair all that is found in takes, and write them.
 
     Nothing else is changed. What was changed, from which neighbour, is written beside each take
-    as its provenance.
+    as its provenance. With --contacts, of a flag's neighbours the one that comes closest to the
+    contact is taken, and at the end every contact is held at its place.
     """
-    from mocapstudio.cli import changes
+    from mocapstudio.cli import changes, contact_files
     from mocapstudio.cli.detection_options import analyse, parameters
     from mocapstudio.cli.take_files import Workload
     from mocapstudio.cli.targets import Targets
@@ -53,7 +65,8 @@ def clean(
     work = Workload(reading)
     files = work.files(takes)
     context_files = work.files(context or ())
-    targets = Targets(out, files, (*files, *context_files))
+    touched = contact_files.by_take(contacts, files)
+    targets = Targets(out, files, (*files, *context_files, *touched.values()))
     others = work.context(context_files)
     done: list[dict[str, Any]] = []
     for path in files:
@@ -61,19 +74,29 @@ def clean(
             found = work.read(path)
             for take in found:
                 target = targets.of(path, take, alone=len(found) == 1)
+                scene = None
+                if path in touched:
+                    scene = contact_files.with_file(path, found, take, touched[path])
                 document, performer = repaired(
-                    analyse(take, others, chosen, quick=quick), context or ()
+                    analyse(take, others, chosen, quick=quick), context or (), scene
                 )
+                if scene is not None:
+                    contact_files.hold(document, scene.over(document.result(performer)))
                 export(document, performer, target)
                 done.append(changes.as_json(path, target, document.state.sitting.edits))
     write_json({"takes": done}, json_path)
     raise typer.Exit(work.exit_code)
 
 
-def repaired(analysis: Analysis, context: list[Path] | tuple[Path, ...]) -> tuple[Document, str]:
+def repaired(
+    analysis: Analysis,
+    context: list[Path] | tuple[Path, ...],
+    scene: Touching | None = None,
+) -> tuple[Document, str]:
     """Return a document in which every flag of an analysis is accepted, and the performer's id.
 
-    A flag that nothing can be proposed for stays open, with a warning on standard error.
+    Where a flag moves a contact of `scene`, the neighbour is taken that comes closest to it. A
+    flag that nothing can be proposed for stays open, with a warning on standard error.
     """
     from mocapstudio.review.document import Document
 
@@ -84,8 +107,19 @@ def repaired(analysis: Analysis, context: list[Path] | tuple[Path, ...]) -> tupl
     document.finish_analysis(performer, document.begin_analysis(performer), analysis)
     for flag in analysis.flags:
         try:
+            if scene is not None:
+                _meet_contacts(document, analysis, flag, scene)
             document.accept(flag.id)
         except MocapError as error:
             place = f"{flag.joint} at frames {flag.start}:{flag.end}"
             print(f"warning: {analysis.take.name}: {place}: {error}", file=sys.stderr)
     return document, performer
+
+
+def _meet_contacts(document: Document, analysis: Analysis, flag: Flag, scene: Touching) -> None:
+    from mocapstudio.cleaning.contacts.aware import donor_for_contacts
+    from mocapstudio.cleaning.proposals import propose
+
+    choice = donor_for_contacts(analysis, flag, scene.contacts, scene.points, scene.others)
+    if choice is not None:
+        document.set_proposal(flag.id, choice, propose(analysis, flag, choice))

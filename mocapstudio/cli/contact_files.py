@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mocapstudio.cleaning.contacts.detection import detecting
 from mocapstudio.cleaning.contacts.files import contacts_record, read_contacts
-from mocapstudio.cleaning.contacts.model import Contact, ContactPoint
+from mocapstudio.cleaning.contacts.model import Contact, ContactPoint, Following
 from mocapstudio.cleaning.contacts.points import contact_points
 from mocapstudio.cli.progress import run
 from mocapstudio.cli.take_files import Workload
@@ -51,6 +51,10 @@ class Touching:
         record = contacts_record(self.take, self.contacts, self.points, self.others)
         return record | {"take": str(self.path), "frames": self.take.frames}
 
+    def over(self, take: Take) -> Touching:
+        """Return the same contacts over another version of the take."""
+        return replace(self, take=take)
+
     def laid(self) -> tuple[Hold, ...]:
         """Return the contacts laid out over the take."""
         from mocapstudio.cleaning.ik.targets import holds
@@ -69,24 +73,64 @@ def touching(
         If a file cannot be read, or does not fit the take.
     """
     work = Workload(reading)
-    takes = [*work.read(path), *(one for p in partners for one in work.read(p))]
+    takes = work.read(path)
+    beside = [one for partner in partners for one in work.read(partner)]
     if not takes:
         raise FileError(path, "holds no motion of a skeleton")
-    take, others = takes[0], {one.name: one for one in takes[1:]}
-    points = contact_points(take)
     if contacts is not None:
-        return Touching(path, take, *with_file(take, contacts, points), others)
+        return with_file(path, [*takes, *beside], takes[0], contacts)
+    take, others = takes[0], {one.name: one for one in (*takes[1:], *beside)}
+    points = contact_points(take)
     found = run(detecting(take, others, points), "contacts")
     return Touching(path, take, found, points, others)
 
 
-def with_file(
-    take: Take, path: Path, points: Sequence[ContactPoint]
-) -> tuple[tuple[Contact, ...], tuple[ContactPoint, ...]]:
-    """Return contacts and contact points of a file; points it does not name stay as they were."""
-    file = read_contacts(path, take, points)
+def with_file(path: Path, scene: Sequence[Take], take: Take, contacts: Path) -> Touching:
+    """Return a take with the contacts of a file.
+
+    Contact points that the file does not name are those of the take.
+
+    Parameters
+    ----------
+    path
+        Where the take was read from.
+    scene
+        All takes that contacts may follow; `take` may be among them.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read, or does not fit.
+    """
+    points = contact_points(take)
+    file = read_contacts(contacts, take, points)
     adjusted = {point.key: point for point in (*points, *file.points)}
-    return file.contacts, tuple(adjusted.values())
+    others = {one.name: one for one in scene if one is not take}
+    for contact in file.contacts:
+        target = contact.target
+        if isinstance(target, Following) and target.performer not in others:
+            raise FileError(
+                contacts, f"contact {contact.id} follows {target.performer}: no such take"
+            )
+    return Touching(path, take, file.contacts, tuple(adjusted.values()), others)
+
+
+def by_take(contacts: Path | None, files: Sequence[Path]) -> dict[Path, Path]:
+    """Return the file of contacts of each take: one for one, or from a folder by name.
+
+    Raises
+    ------
+    FileError
+        If one file is given for several takes.
+    """
+    if contacts is None:
+        return {}
+    if contacts.is_dir():
+        named = {file: contacts / f"{file.stem}.json" for file in files}
+        return {file: found for file, found in named.items() if found.is_file()}
+    if len(files) > 1:
+        raise FileError(contacts, "is one file; several takes need a folder of contacts")
+    return dict.fromkeys(files, contacts)
 
 
 def held(scene: Touching) -> tuple[SkateResult, Document, str]:
