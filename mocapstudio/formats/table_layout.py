@@ -49,7 +49,7 @@ class Layout:
         """Turn positions (..., 3) in metres and our axes into the file's, rounded."""
         turned = rot.rotate(rot.conjugate(self.to_inside), positions) / self.unit
         # Adding zero turns -0.0 into 0.0.
-        return np.asarray(np.round(turned, self.decimals) + 0.0)
+        return off_origin(np.round(turned, self.decimals) + 0.0, self.decimals)
 
 
 def lay_out(take: Take | MarkerTake, options: WriteOptions, form: str, usual: str) -> Layout:
@@ -84,3 +84,17 @@ def lay_out(take: Take | MarkerTake, options: WriteOptions, form: str, usual: st
     start, end = take.span if options.trim else (0, take.frames)
     metres = METRES[name]
     return Layout(metres, name, to_inside, start, end, math.ceil(math.log10(metres / _RESOLUTION)))
+
+
+def off_origin(positions: Array, decimals: int) -> Array:
+    """Move what is exactly at the origin by the last digit: 0 0 0 would read as missing.
+
+    Parameters
+    ----------
+    positions
+        (..., 3), rounded; changed in place.
+    decimals
+        Digits after the point.
+    """
+    positions[(positions == 0).all(axis=-1), 0] = 10.0**-decimals
+    return positions

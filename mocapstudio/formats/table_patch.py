@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapstudio.formats.table_layout import off_origin
 from mocapstudio.formats.table_motion import TableRecord, as_read
 from mocapstudio.formats.table_sheet import Sheet
 from mocapstudio.motion import rotations as rot
@@ -93,7 +94,9 @@ def _texts(value: Array, record: TableRecord, line: int, unit: float) -> list[by
         if not record.zeros and sheet.delimiter is not None:
             return [b"", b"", b""]
         value = np.zeros(3)
-    texts = (f"{number + 0.0:.{decimals}f}" for number in value)
+    else:
+        value = off_origin(np.round(value, decimals) + 0.0, decimals)
+    texts = (f"{number:.{decimals}f}" for number in value)
     return [text.encode().replace(b".", sheet.decimal) for text in texts]
 
 
