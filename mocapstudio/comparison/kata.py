@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapstudio.comparison import timing
-from mocapstudio.comparison.doubt import doubts
+from mocapstudio.comparison.doubt import Doubt, doubt
 from mocapstudio.comparison.joint_rows import performance_of_take
 from mocapstudio.comparison.marker_rows import performance_of_markers
 from mocapstudio.comparison.matching import Match, match
@@ -20,19 +20,15 @@ from mocapstudio.comparison.model import Comparison
 from mocapstudio.comparison.normalisation import Poses, normalised
 from mocapstudio.comparison.parameters import ComparisonParameters
 from mocapstudio.comparison.performance import Performance
+from mocapstudio.comparison.pose_alignment import align_poses
 from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.take import Take
-from mocapstudio.similarity.alignment.costs import Costs, PoseDistances, ReliableDistances
-from mocapstudio.similarity.alignment.dtw import Alignment, Ends, aligning
-from mocapstudio.similarity.alignment.frugal import aligning_frugally
+from mocapstudio.similarity.alignment.dtw import Alignment
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Result = TypeVar("Result")
-
-_MOST_CELLS = 64_000_000
-"""Pairs of frames whose accumulated distances are kept at once: 256 MB."""
 
 
 def compare(
@@ -72,14 +68,17 @@ def compare(
     theirs = normalised(other, matched.source, chosen.features)
     yield Progress(0.1, "resampling")
     frames = lengths(one, other, chosen)
-    costs = costs_of(ours.resampled(one.span, frames[0]), theirs.resampled(other.span, frames[1]))
-    alignment = yield from _scaled(_aligning(costs, chosen), 0.2, 0.8)
-    yield Progress(0.8, "weighing doubts")
-    warnings = (*one.warnings, *other.warnings, *matched.warnings)
-    warnings += doubts(costs, alignment, _seconds(one), _seconds(other))
-    return _comparison(
-        _Pair(one, other, matched, ours, theirs), alignment, frames, chosen, warnings
+    aligned = yield from _scaled(
+        align_poses(
+            ours.resampled(one.span, frames[0]), theirs.resampled(other.span, frames[1]), chosen
+        ),
+        0.2,
+        0.8,
     )
+    yield Progress(0.8, "weighing doubts")
+    doubted = doubt(aligned, _seconds(one), _seconds(other))
+    pair = _Pair(one, other, matched, ours, theirs)
+    return _comparison(pair, aligned.alignment, frames, chosen, doubted)
 
 
 def performance_of(recording: Take | MarkerTake, unreliable: Mask | None = None) -> Performance:
@@ -102,21 +101,6 @@ def lengths(one: Performance, other: Performance, chosen: ComparisonParameters) 
         return first, second
     longest = max(round(_seconds(p) * r) + 1 for p, r in zip((one, other), rates, strict=True))
     return max(2, longest), max(2, longest)
-
-
-def costs_of(ours: Poses, theirs: Poses) -> Costs:
-    """Return what pairs of frames cost, by the rows that are reliable."""
-    one, other = ours.points.astype(np.float32), theirs.points.astype(np.float32)
-    if ours.reliable and theirs.reliable:
-        return PoseDistances(one.reshape(len(one), -1), other.reshape(len(other), -1))
-    return ReliableDistances(one, other, ours.weight, theirs.weight)
-
-
-def _aligning(costs: Costs, chosen: ComparisonParameters) -> Generator[Progress, None, Alignment]:
-    ends = Ends(chosen.open_begin, chosen.open_end)
-    if costs.shape[0] * costs.shape[1] > _MOST_CELLS:
-        return (yield from aligning_frugally(costs, ends))
-    return (yield from aligning(costs, ends))
 
 
 def _scaled(
@@ -148,7 +132,7 @@ def _comparison(
     alignment: Alignment,
     frames: tuple[int, int],
     chosen: ComparisonParameters,
-    warnings: tuple[str, ...],
+    doubted: Doubt,
 ) -> Comparison:
     one, other, ours, theirs = pair.one, pair.other, pair.ours, pair.theirs
     path = timing.at_own_rates(
@@ -162,7 +146,7 @@ def _comparison(
     gap = timing.misalignment(matched, rates, 1.0, begins)
     relative = timing.misalignment(matched, rates, _seconds(one) / _seconds(other), begins)
     warp = timing.warp_of(gap, rates, begins, one.frames)
-    difference, total = _differences(ours, theirs, warp)
+    difference, total, weight = _differences(ours, theirs, warp)
     shown = gap if chosen.true_speed else relative
     rows = [one.rows[i] for i in pair.matched.reference]
     return Comparison(
@@ -182,21 +166,25 @@ def _comparison(
         joint_difference=difference,
         pose_difference=total,
         dissimilarity=alignment.mean_cost,
-        warnings=warnings,
+        warnings=(*one.warnings, *other.warnings, *pair.matched.warnings, *doubted.warnings),
+        doubt=doubted.disorder,
+        unreliable=None if (weight > 0).all() else weight == 0,
+        features=chosen.features,
+        true_speed=chosen.true_speed,
     )
 
 
 def _differences(
     ours: Poses, theirs: Poses, warp: Array
-) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Distance of each row (S, N), and of whole poses (S,), from the matched reference pose."""
+) -> tuple[NDArray[np.float32], NDArray[np.float32], Array]:
+    """Distance of each row (S, N) and of whole poses (S,) from the matched one; weights (S, N)."""
     points, weight = ours.at(warp)
     weight = weight * theirs.weight
     rows = np.linalg.norm(theirs.points - points, axis=2) * weight
     known = weight.sum(axis=1)
     scale = np.where(known > 0, weight.shape[1] / np.maximum(known, 1.0), 0.0)
     total = np.sqrt(np.sum(rows**2, axis=1) * scale)
-    return rows.astype(np.float32), total.astype(np.float32)
+    return rows.astype(np.float32), total.astype(np.float32), weight
 
 
 def _reduced(rate: Fraction, least: float) -> float:

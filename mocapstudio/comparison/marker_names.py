@@ -25,7 +25,7 @@ _ARM = re.compile(
 _LEG = re.compile(
     r"^(thi|th\d|kne|mkne|mknee|lfc|mfc|fem|tib|tb\d|shn|shin|shank|ank|mank|lmal|mmal|mal|hee"
     r"|cal|toe|mt\d|met|5met|1met|big|small|fak|bak|foot|leg|hjc|kjc|ajc|hip|postfem|antfem"
-    r"|posttib|anttib)"
+    r"|posttib|anttib|up|low)"
 )
 
 # Roles as `joint_rows.joint_roles` names them; labels without side, in order of preference.
@@ -36,13 +36,13 @@ _ROLES = {
     "pelvis": ("midhip", "pelvis", "sac", "hips"),
 }
 _SIDED_ROLES = {
-    "shoulder": ("sho", "shd", "shoulder", "sjc", "acr"),
-    "elbow": ("elb", "elbow", "ejc", "lel"),
-    "hand": ("wra", "wrs", "wrist", "wrb", "wjc"),
-    "fingers": ("fin", "ind", "hand"),
-    "hip": ("hip", "hjc"),
-    "knee": ("kne", "knee", "kjc", "lfc"),
-    "foot": ("ank", "fak", "ankle", "ajc", "lmal"),
+    "shoulder": ("sho", "shd", "arm", "upperarm", "shoulder", "sjc", "acr"),
+    "elbow": ("elb", "elbow", "forearm", "lowerarm", "ejc", "lel"),
+    "hand": ("wra", "wrs", "wrist", "wrb", "wjc", "hand"),
+    "fingers": ("fin", "ind"),
+    "hip": ("hip", "thigh", "upleg", "upperleg", "hjc"),
+    "knee": ("kne", "knee", "leg", "lowerleg", "shin", "kjc", "lfc"),
+    "foot": ("ank", "fak", "ankle", "foot", "ajc", "lmal"),
     "toes": ("toe", "bigtoe", "mt5"),
 }
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,9 +19,15 @@ _BACK_OF_HEAD = (("bkhd",), ("lbhd", "rbhd"), ("lbhead", "rbhead"), ("head",), (
 _C7 = (("c7",), ("t1",), ("t2",), ("t10",))
 _LEFT_HIP = (("lfhp", "lbhp"), ("lasi", "lpsi"), ("lfwt", "lbwt"), ("lasis", "lpsis"), ("lasi",))
 _RIGHT_HIP = (("rfhp", "rbhp"), ("rasi", "rpsi"), ("rfwt", "rbwt"), ("rasis", "rpsis"), ("rasi",))
-_LEFT_SHOULDER = (("lshd",), ("lsho",), ("lacr",), ("lshoulder",))
-_RIGHT_SHOULDER = (("rshd",), ("rsho",), ("racr",), ("rshoulder",))
-_HIP_JOINTS = ((("lhip",), ("lhjc",)), (("rhip",), ("rhjc",)))
+_LEFT_SHOULDER = (("lshd",), ("lsho",), ("lacr",), ("leftarm",), ("lshoulder",))
+_RIGHT_SHOULDER = (("rshd",), ("rsho",), ("racr",), ("rightarm",), ("rshoulder",))
+_LEFT_THIGH = (("lhip",), ("lhjc",), ("leftthigh",), ("leftupleg",), ("lthigh",))
+_RIGHT_THIGH = (("rhip",), ("rhjc",), ("rightthigh",), ("rightupleg",), ("rthigh",))
+_PAIRS = (
+    (_LEFT_HIP, _RIGHT_HIP),
+    (_LEFT_THIGH, _RIGHT_THIGH),
+    (_LEFT_SHOULDER, _RIGHT_SHOULDER),
+)
 
 _TRUSTED_GAP = 0.5
 """Seconds: positions completed in longer gaps are not held against the performer."""
@@ -51,10 +59,14 @@ def performance_of_markers(
         warnings.append(f"{share:.1%} of the positions lie in long gaps and do not count")
     if unreliable is not None:
         doubtful = doubtful | unreliable
-    root, said = _root_frame(take.labels, positions, order)
-    head = _head_frame(take.labels, positions, seen)
+    there = [label if i in seen else "" for i, label in enumerate(take.labels)]
+    root, said = _root_frame(there, positions, seen)
+    head = _head_frame(there, positions)
     if head is None:
-        said = (*said, "no markers of neck, C7 and head: compared in the frame of the hips")
+        said = (
+            *said,
+            "no markers of neck, head and C7 or shoulders: compared in the frame of the hips",
+        )
     return Performance(
         name=take.name,
         rate=take.rate,
@@ -95,29 +107,31 @@ def completed(take: MarkerTake) -> tuple[Array, NDArray[np.bool_]]:
     return positions, doubtful
 
 
-def _head_frame(labels: tuple[str, ...], positions: Array, seen: list[int]) -> BodyFrame | None:
-    """NCK at the origin, NCK-BKHD along z, NCK-C7-BKHD in the yz plane (paper 4)."""
-    there = [labels[i] if i in seen else "" for i in range(len(labels))]
-    neck, back, c7 = (marker_names.find(there, *names) for names in (_NECK, _BACK_OF_HEAD, _C7))
-    if not (neck and back and c7) or set(neck) & set(c7):
+def _head_frame(labels: Sequence[str], positions: Array) -> BodyFrame | None:
+    """NCK at the origin, NCK-BKHD along z, NCK-C7-BKHD in the yz plane (paper 4).
+
+    Where C7 is not there, the shoulders tell which way the back is.
+    """
+    neck, back, c7, left, right = (
+        marker_names.find(labels, *names)
+        for names in (_NECK, _BACK_OF_HEAD, _C7, _LEFT_SHOULDER, _RIGHT_SHOULDER)
+    )
+    if not (neck and back and (c7 or (left and right))):
         return None
     origin = positions[:, neck].mean(axis=1)
     along = positions[:, back].mean(axis=1) - origin
-    return frame_along(origin, along, positions[:, c7].mean(axis=1) - origin)
+    if c7:
+        return frame_along(origin, along, positions[:, c7].mean(axis=1) - origin)
+    across = positions[:, left].mean(axis=1) - positions[:, right].mean(axis=1)
+    return frame_along(origin, along, -np.cross(across, along))
 
 
 def _root_frame(
-    labels: tuple[str, ...], positions: Array, seen: list[int]
+    labels: Sequence[str], positions: Array, seen: list[int]
 ) -> tuple[BodyFrame, tuple[str, ...]]:
     """Middle of the pelvis, world's up, and heading from right to left hip (or shoulder)."""
-    there = [labels[i] if i in seen else "" for i in range(len(labels))]
-    sides = (
-        (_LEFT_HIP, _RIGHT_HIP),
-        _HIP_JOINTS,
-        (_LEFT_SHOULDER, _RIGHT_SHOULDER),
-    )
-    for left_names, right_names in sides:
-        left, right = (marker_names.find(there, *names) for names in (left_names, right_names))
+    for left_names, right_names in _PAIRS:
+        left, right = (marker_names.find(labels, *names) for names in (left_names, right_names))
         if left and right:
             one, other = positions[:, left].mean(axis=1), positions[:, right].mean(axis=1)
             level = (one - other) * [1.0, 0.0, 1.0]

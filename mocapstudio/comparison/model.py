@@ -62,6 +62,16 @@ class Comparison:
         Mean cost of a step of the path.
     warnings
         What makes the alignment doubtful, as phrases; empty where nothing does.
+    doubt
+        Cost of the path over its cost with the source's parts in wrong orders: near 0 where only
+        the right order fits, 1 where any does.
+    unreliable
+        (S, N) True where a row was left out of the difference (which is 0 there), in the source
+        or in the matched reference frame; None where none was.
+    features
+        What was compared: ``"box"``, ``"root"`` or ``"rotations"``.
+    true_speed
+        Whether `timing` classifies `misalignment`, or `misalignment_relative`.
     """
 
     reference: str
@@ -81,3 +91,7 @@ class Comparison:
     pose_difference: NDArray[np.float32]
     dissimilarity: float
     warnings: tuple[str, ...] = ()
+    doubt: float = 0.0
+    unreliable: NDArray[np.bool_] | None = None
+    features: str = "box"
+    true_speed: bool = False

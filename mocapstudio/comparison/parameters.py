@@ -22,7 +22,7 @@ Side = Literal["reference", "source"]
 
 @dataclass(frozen=True)
 class ComparisonParameters:
-    """How two performances are compared; defaults are those of paper 4.
+    """How two performances are compared; `PAPER` is paper 4 to the letter.
 
     Parameters
     ----------
@@ -40,6 +40,8 @@ class ComparisonParameters:
         Seconds over which gain and loss are looked at.
     begin, end
         ``"closed"``, or the side of which frames may be skipped at that end.
+    ignore_style
+        Leave differences of pose that last out of the alignment; the paper does not.
     rounded
         Round F to whole frames, as the paper does.
 
@@ -56,6 +58,7 @@ class ComparisonParameters:
     window: float = 0.5
     begin: str = CLOSED
     end: str = CLOSED
+    ignore_style: bool = True
     rounded: bool = False
 
     def __post_init__(self) -> None:
@@ -81,3 +84,6 @@ class ComparisonParameters:
 
 def _side(choice: str) -> Side | None:
     return "reference" if choice == REFERENCE else "source" if choice == SOURCE else None
+
+
+PAPER = ComparisonParameters(ignore_style=False, rounded=True)

@@ -12,6 +12,7 @@ from mocapstudio.similarity import parallel
 from mocapstudio.similarity.alignment import kernels
 
 F32 = NDArray[np.float32]
+Which = slice | NDArray[np.intp]
 
 _AT_LEAST = 64
 
@@ -29,8 +30,8 @@ class Costs(Protocol):
     def pairs(self, path: NDArray[np.int32]) -> F32:
         """(P,) costs of the pairs of a path (P, 2)."""
 
-    def part(self, rows: slice, columns: slice) -> Costs:
-        """Return the costs of some frames; a step of -1 turns time round."""
+    def part(self, rows: Which, columns: Which) -> Costs:
+        """Return the costs of some frames, in the order in which they are given."""
 
 
 class PoseDistances:
@@ -80,8 +81,8 @@ class PoseDistances:
         gaps = self.reference[path[:, 0]] - self.source[path[:, 1]]
         return np.asarray(np.linalg.norm(gaps, axis=1), np.float32)
 
-    def part(self, rows: slice, columns: slice) -> PoseDistances:
-        """Return the costs of some frames; a step of -1 turns time round."""
+    def part(self, rows: Which, columns: Which) -> PoseDistances:
+        """Return the costs of some frames, in the order in which they are given."""
         return PoseDistances(self.reference[rows], self.source[columns])
 
 
@@ -144,8 +145,8 @@ class ReliableDistances:
         squares = np.sum((self.reference[i] - self.source[j]) ** 2, axis=2)
         return self._scaled(np.sum(weight * squares, axis=1), weight.sum(axis=1))
 
-    def part(self, rows: slice, columns: slice) -> ReliableDistances:
-        """Return the costs of some frames; a step of -1 turns time round."""
+    def part(self, rows: Which, columns: Which) -> ReliableDistances:
+        """Return the costs of some frames, in the order in which they are given."""
         a, b = self.weights
         return ReliableDistances(self.reference[rows], self.source[columns], a[rows], b[columns])
 

@@ -121,7 +121,8 @@ def traced(accumulated: F32, ends: Ends = CLOSED) -> Path:
     """(P, 2) cheapest path through an accumulated distance matrix (R, S)."""
     end = last_cell(accumulated[-1], accumulated[:, -1], ends)
     path = np.empty((sum(accumulated.shape), 2), np.int32)
-    first = kernels.backtrack(accumulated, *end, *ends.free, path)
+    no_band = np.zeros(len(accumulated), np.int32)
+    first = kernels.backtrack(accumulated, no_band, *end, *ends.free, path)
     return path[first:].copy()
 
 
@@ -154,7 +155,7 @@ def align_in_band(costs: PoseDistances, band: int, ends: Ends = CLOSED) -> Align
     if not np.isfinite(_cell(m, low, *end)):
         raise ParameterError(f"no path keeps to a band of {band} frames")
     path = np.empty((rows + columns, 2), np.int32)
-    first = kernels.backtrack_within(m, low, *end, *ends.free, path)
+    first = kernels.backtrack(m, low, *end, *ends.free, path)
     return Alignment(path[first:].copy(), costs.pairs(path[first:]))
 
 

@@ -224,13 +224,17 @@ def accumulate_within(m: F32, low: I32, open_rows: bool, open_columns: bool) -> 
 
 
 @nb.njit(nogil=True, cache=True)
-def backtrack(m: F32, i: int, j: int, open_rows: bool, open_columns: bool, path: I32) -> int:
+def backtrack(
+    m: F32, low: I32, i: int, j: int, open_rows: bool, open_columns: bool, path: I32
+) -> int:
     """Walk the cheapest path back from cell (i, j); a diagonal step wins a tie.
 
     Parameters
     ----------
     m
-        (R, S) accumulated distances.
+        (R, W) accumulated distances.
+    low
+        (R,) source frame at which each row of `m` begins; 0 where it is no band.
     open_rows, open_columns
         Whether the path may begin at any row of the first column, or any column of the first row.
     path
@@ -240,17 +244,7 @@ def backtrack(m: F32, i: int, j: int, open_rows: bool, open_columns: bool, path:
     -------
     The index in `path` of the path's first pair.
     """
-    low = np.zeros(m.shape[0], np.int32)
-    first: int = backtrack_within(m, low, i, j, open_rows, open_columns, path)
-    return first
-
-
-@nb.njit(nogil=True, cache=True)
-def backtrack_within(
-    m: F32, low: I32, i: int, j: int, open_rows: bool, open_columns: bool, path: I32
-) -> int:
-    """Do as `backtrack` in a band (R, W) whose rows begin at the source frames `low`."""
-    width, at = m.shape[1], path.shape[0] - 1
+    width, at = m.shape[1], len(path) - 1
     path[at, 0], path[at, 1] = i, j
     while not ((i == 0 and (j == 0 or open_columns)) or (j == 0 and open_rows)):
         diagonal, up, left = _INF, _INF, _INF
