@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mocapstudio.gui.command import SEPARATOR, Command
+from mocapstudio.gui.compare.commands import COMPARE, SEGMENTS
 from mocapstudio.gui.workspaces.registry import WORKSPACES
 
 __all__ = ["COMMANDS", "HOMES", "MENUS", "SEPARATOR", "Command"]
@@ -149,13 +150,16 @@ MENUS = {
     "Fla&g": FLAG,
     "&Neighbour": NEIGHBOURS,
     "&Analysis": ANALYSIS,
+    "&Compare": COMPARE,
+    "&Segments": SEGMENTS,
     "&Play": PLAY,
     "&View": VIEW,
     "&Workspace": WORKSPACE,
     "&Help": HELP,
 }
 
-HOMES = {"Fla&g": ("review",), "&Neighbour": ("review",), "&Analysis": ("review",)}
+HOMES = {"Fla&g": ("review",), "&Neighbour": ("review",), "&Analysis": ("review",),
+         "&Compare": ("compare",), "&Segments": ("compare",)}  # fmt: skip
 """Menus that belong to some workspaces only, by title."""
 
 COMMANDS = {one.name: one for menu in MENUS.values() for one in menu if one is not SEPARATOR}

@@ -63,6 +63,13 @@ class Linked:
         """Source frame that matches a reference frame: the middle of all that do."""
         return round(float(np.interp(reference, *self._inverse)))
 
+    def carried(self, segment: Segment) -> tuple[int, int]:
+        """Half-open span of source frames that a segment of the reference carries over to."""
+        last = self.frames[0] - 1
+        start = int(self.matched[min(segment.start, last)])
+        end = int(self.matched[min(segment.end - 1, last)]) + 1
+        return start, max(end, start + 1)
+
     @cached_property
     def matched(self) -> NDArray[np.int64]:
         """(R,) the source frame that matches each reference frame."""

@@ -134,8 +134,7 @@ class DifferencePlot(CurvePlot):
         super().__init__(time_range, unit="", least=0.05, axis="top")
 
     def _limits(self, low: float, high: float) -> tuple[float, float]:
-        shown = self._beside
-        return 0.0, high if shown is None or not len(self._values) else max(high, 0.0)
+        return 0.0, high
 
     @staticmethod
     def _padded(low: float, high: float, pad: float) -> tuple[float, float]:
@@ -146,12 +145,14 @@ class DifferencePlot(CurvePlot):
         pooled = self._pooled(self._values)
         left, width = self._edges(pooled)
         tops = self._y_of(pooled.high, area)
+        edges = np.rint(np.append(left, left[-1:] + width)).astype(int)
         for kind in (0, 1, -1):
             colour = kinds.timing(look, kind)
             for at in np.flatnonzero((pooled.timing == kind) & np.isfinite(tops)):
-                bar = QRectF(left[at], tops[at], max(width - (width > 4), 1.0), area.bottom())
+                start, end = edges[at], edges[at + 1] - (width > 4)
+                bar = QRectF(start, tops[at], max(end - start, 1.0), area.bottom() - tops[at])
                 p.fillRect(bar, colours.faded(colour, 0.55))
-                p.fillRect(QRectF(left[at], tops[at], bar.width(), 2.0), colour)
+                p.fillRect(QRectF(start, tops[at], bar.width(), 2.0), colour)
         if self._beside is not None:
             self._draw_beside(p, area)
 
@@ -173,6 +174,9 @@ class MisalignmentPlot(CurvePlot):
         super().__init__(time_range, unit="s", least=0.1, axis="")
 
     def _limits(self, low: float, high: float) -> tuple[float, float]:
+        # Seen from near, zero may lie far outside: then what changes matters more.
+        if min(abs(low), abs(high)) > 2.0 * max(high - low, self._least):
+            return low, high
         return min(low, 0.0), max(high, 0.0)
 
     def _fit(self) -> None:
@@ -190,10 +194,12 @@ class MisalignmentPlot(CurvePlot):
         zero = float(self._y_of(np.array(0.0), area))
         high, low = self._y_of(pooled.high, area), self._y_of(pooled.low, area)
         level = 0.5 * (high + low)
+        edges = np.rint(np.append(left, left[-1:] + width)).astype(int)
         for at in np.flatnonzero(np.isfinite(level)):
             colour = kinds.timing(look, pooled.timing[at])
             top, bottom = min(level[at], zero), max(level[at], zero)
-            p.fillRect(QRectF(left[at], top, width + 0.5, bottom - top), colours.faded(colour, 0.2))
+            bar = QRectF(edges[at], top, edges[at + 1] - edges[at], bottom - top)
+            p.fillRect(bar, colours.faded(colour, 0.2))
         p.setRenderHint(QPainter.RenderHint.Antialiasing)
         for kind in (0, 1, -1):
             path = _runs(middle, level, pooled.timing == kind)

@@ -6,11 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetricsF, QImage, QPainter, QPen
 
-from mocapstudio.comparison.model import Comparison, Segment
+from mocapstudio.comparison.model import Comparison
 from mocapstudio.gui import theme as themes
 from mocapstudio.gui.compare import colours as kinds
 from mocapstudio.gui.compare.heat_layout import Bands
@@ -101,14 +100,6 @@ def draw_timing(
         p.setPen(QPen(colours.faded(kinds.timing(look, kind), 0.55 if kind == 0 else 0.9), 1.1))
         p.drawLines(lines)
     p.setRenderHint(QPainter.RenderHint.Antialiasing, False)
-
-
-def carried(segment: Segment, matched: NDArray[np.int64]) -> tuple[int, int]:
-    """Half-open span of source frames that a segment of the reference carries over to."""
-    last = len(matched) - 1
-    start = int(matched[min(segment.start, last)])
-    end = int(matched[min(segment.end - 1, last)]) + 1
-    return start, max(end, start + 1)
 
 
 def draw_segments(

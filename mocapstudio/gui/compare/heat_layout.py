@@ -83,7 +83,7 @@ class Bands:
     @staticmethod
     def room(height: float) -> int:
         """Pixels that the rows of one performance may take in a plot of that height."""
-        between = max(_LEAST_BETWEEN, 0.2 * height)
+        between = max(_LEAST_BETWEEN, 0.17 * height)
         return max(int((height - 2 * LANE - between) / 2), 1)
 
 

@@ -10,7 +10,7 @@ from mocapstudio.gui.compare import heat_drawing as drawing
 from mocapstudio.gui.compare.heat_drawing import Scale
 from mocapstudio.gui.compare.heat_layout import Bands, ReferenceAxis, Side, TwinHead, limb_groups
 from mocapstudio.gui.compare.layout import Stretch, reference_stretch
-from mocapstudio.gui.compare.pooling import PooledPoses
+from mocapstudio.gui.compare.pooling import PooledPoses, contrast
 from mocapstudio.gui.plots.layers import Layer
 from mocapstudio.gui.plots.rows import Group, RowLayout
 from mocapstudio.gui.plots.time_plot import Gesture, TimePlot
@@ -79,7 +79,11 @@ class HeatPlot(TimePlot):
             self._pooled, self._groups = None, ()
             if linked is not None:
                 both = linked.comparison
-                self._pooled = PooledPoses(both.source_poses), PooledPoses(both.reference_poses)
+                scale = contrast(both.source_poses, both.reference_poses)
+                self._pooled = (
+                    PooledPoses(both.source_poses, *scale),
+                    PooledPoses(both.reference_poses, *scale),
+                )
                 self._groups = limb_groups(both)
                 self.reference_axis.set_clock(float(both.reference_rate), 0)
         self._true_speed = true_speed
@@ -192,7 +196,7 @@ class HeatPlot(TimePlot):
         assert self._linked is not None
         edges = {}
         for one in self._segments:
-            start, end = drawing.carried(one, self._linked.matched)
+            start, end = self._linked.carried(one)
             edges[one.start], edges[one.end] = start, end
         return [(own, other) for other, own in edges.items()]
 
@@ -204,8 +208,7 @@ class HeatPlot(TimePlot):
         spans = [(one.name, one.start, one.end) for one in shown]
         chosen = self._segment if self._draft is None else len(spans) - 1
         drawing.draw_segments(p, bands.lane, self.reference_scale, spans, chosen)
-        matched = self._linked.matched
-        over = [(one.name, *drawing.carried(one, matched)) for one in shown]
+        over = [(one.name, *self._linked.carried(one)) for one in shown]
         drawing.draw_segments(p, bands.carried, self.source_scale, over, chosen)
 
     # -- mouse

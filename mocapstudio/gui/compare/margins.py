@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from PySide6.QtCore import QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
@@ -93,10 +91,10 @@ class AxesLegend(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setFixedWidth(RIGHT_GUTTER)
-        self._names: Sequence[str] = ("left–right", "up–down", "to and fro")
         self.setToolTip(
-            "The colour of a cell is the place of that joint in the body's own box:\n"
-            "red grows along its first axis, green along its second, blue along its third."
+            "The colour of a cell is the place of that joint in the body's own box: red grows\n"
+            "along its first axis, green along its second, blue along its third. Both are\n"
+            "drawn by one scale: equal colours are equal poses."
         )
 
     def paintEvent(self, _event: QPaintEvent) -> None:
@@ -135,7 +133,7 @@ class HeatMargin(QWidget):
         """Put the names beside the bands."""
         self._bands = bands
         for one, band in ((self._source, bands.source), (self._reference, bands.reference)):
-            one.setGeometry(0, int(band.top()), LEFT_GUTTER, int(band.height()) + 1)
+            one.setGeometry(0, int(band.top()), LEFT_GUTTER, int(band.height()) + 6)
             one.set_rows(rows, 0)
         self.update()
 

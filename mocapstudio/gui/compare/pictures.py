@@ -15,6 +15,7 @@ from mocapstudio.gui.compare.layout import frames_wide
 from mocapstudio.gui.compare.margins import AxesLegend, HeatMargin, ReadOutPanel, TimingLegend
 from mocapstudio.gui.plots.time_plot import TimePlot
 from mocapstudio.gui.plots.time_range import TimeRange
+from mocapstudio.gui.widgets.parts import Hint, panel
 from mocapstudio.review.comparing import ComparingState
 
 _DWELL_MS = 250
@@ -71,7 +72,7 @@ class PicturesView(QWidget):
         grid.setSpacing(0)
         rows = (
             (self._difference_read, self.difference, TimingLegend()),
-            (self._misalignment_read, self.misalignment, QWidget()),
+            (self._misalignment_read, self.misalignment, panel("")),
         )
         for row, (left, plot, right) in enumerate(rows):
             grid.addWidget(left, row, 0)
@@ -83,9 +84,10 @@ class PicturesView(QWidget):
         grid.addWidget(AxesLegend(), 2, 3)
         grid.setColumnMinimumWidth(1, 46)
         grid.setColumnStretch(2, 1)
-        for row, stretch in enumerate((21, 17, 62)):
+        for row, stretch in enumerate((19, 16, 65)):
             grid.setRowStretch(row, stretch)
         self.heat.setMinimumHeight(120)
+        self._hint = Hint(self.heat.viewport(), "pictures-hint")
 
     def _wire(self) -> None:
         sitting = self._bridge.sitting
@@ -116,7 +118,7 @@ class PicturesView(QWidget):
         """Take over what differs from what is shown."""
         was, self._shown = self._shown, new
         linked, comparison = new.linked, new.comparison
-        anew = was is None or linked is not was.linked
+        anew = was is None or linked is not was.linked or new.source is not was.source
         if anew:
             self._show_comparison(new)
         elif was is not None and new.shown != was.shown:
@@ -141,6 +143,7 @@ class PicturesView(QWidget):
                 take = state.reference
                 self.heat.reference_axis.set_clock(float(take.rate), take.first_frame)
             self._margin.tell(comparison.source, comparison.reference)
+        self._hint.say(_waiting(state))
         self.heat.show_comparison(state.linked, true_speed)
         gap = None
         if comparison is not None:
@@ -295,3 +298,13 @@ class PicturesView(QWidget):
             own = comparison.joint_difference[frame, comparison.rows.index(row)]
             lines.insert(0, f"{row}: {own:.3f} apart")
         return "\n".join(lines)
+
+
+def _waiting(state: ComparingState) -> str:
+    """Say why there is nothing to see yet, or "" where there is."""
+    source = state.source
+    if source is None or source.linked is not None:
+        return ""
+    if source.failure:
+        return f"{source.id} is not compared: {source.failure}"
+    return f"Comparing {source.id}…"

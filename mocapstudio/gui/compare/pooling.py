@@ -19,12 +19,17 @@ class PooledPoses:
     Parameters
     ----------
     poses
-        (F, N, 3) features, 0..1; NaN where there is none.
+        (F, N, 3) features; NaN where there is none.
+    low, high
+        (3,) values that are drawn darkest and brightest, for each of the three features.
     """
 
-    def __init__(self, poses: NDArray[np.float32]) -> None:
+    def __init__(
+        self, poses: NDArray[np.float32], low: NDArray[np.float32], high: NDArray[np.float32]
+    ) -> None:
         self._known: NDArray[np.bool_] = np.asarray(np.isfinite(poses).all(axis=2))
-        self._poses = np.where(self._known[..., None], poses, 0.0).astype(np.float32)
+        scaled = (poses - low) / np.maximum(high - low, 1e-6)
+        self._poses = np.where(self._known[..., None], scaled, 0.0).astype(np.float32)
         self._pooled: OrderedDict[int, NDArray[np.uint32]] = OrderedDict()
 
     @property
@@ -57,6 +62,22 @@ class PooledPoses:
         alpha = np.where(count > 0, np.uint32(0xFF000000), np.uint32(0))
         packed = alpha | rgb[..., 0] << 16 | rgb[..., 1] << 8 | rgb[..., 2]
         return np.ascontiguousarray(np.where(count > 0, packed, 0).T.astype(np.uint32))
+
+
+def contrast(
+    one: NDArray[np.float32], other: NDArray[np.float32]
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """(3,) lowest and highest value of each feature in two performances, outliers left out.
+
+    Both are drawn by the same scale, so that equal colours are equal poses.
+    """
+    every = max(1, max(len(one), len(other)) // 400)
+    both = np.concatenate([one[::every].reshape(-1, 3), other[::every].reshape(-1, 3)])
+    both = both[np.isfinite(both).all(axis=1)]
+    if not len(both):
+        return np.zeros(3, np.float32), np.ones(3, np.float32)
+    low, high = np.percentile(both, (1, 99), axis=0)
+    return low.astype(np.float32), high.astype(np.float32)
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from mocapstudio.gui.compare.actors import Actor, actor_of
 from mocapstudio.gui.compare.bridge import Alignment, CompareUi
 from mocapstudio.gui.compare.placing import Placing
 from mocapstudio.gui.viewport.figure import Figure
-from mocapstudio.gui.viewport.palette import Colour, Palette
+from mocapstudio.gui.viewport.palette import Colour
 from mocapstudio.gui.viewport.solids import COARSE, FINE, Detail
 from mocapstudio.review.comparing import Compared, ComparingState, Recording
 
@@ -117,12 +117,7 @@ class Troupe:
         return self._here[key]
 
     def colours(
-        self,
-        member: Member,
-        state: ComparingState,
-        palette: Palette,
-        own: Colour,
-        hot: Colour | None,
+        self, member: Member, state: ComparingState, own: Colour, hot: Colour | None
     ) -> NDArray[np.uint8]:
         """(P, 3) colour of each point: its own, or towards `hot` where it differs.
 

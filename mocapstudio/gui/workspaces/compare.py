@@ -3,18 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtWidgets import QVBoxLayout
+from PySide6.QtCore import QEvent
+from PySide6.QtWidgets import QStackedLayout, QWidget
 
+from mocapstudio.gui.compare.answering import Answering
+from mocapstudio.gui.compare.bridge import CompareBridge, CompareUi
+from mocapstudio.gui.compare.desk import CompareDesk
+from mocapstudio.gui.compare.empty import EmptyCompare
+from mocapstudio.gui.compare.playing import ComparePlayback
+from mocapstudio.gui.compare.working import Working
 from mocapstudio.gui.workspaces.workspace import Answers, Workspace
+from mocapstudio.review.comparing import ComparingState
+from mocapstudio.review.comparing_state import only_heads_differ
 
 if TYPE_CHECKING:
     from mocapstudio.gui.main_window import MainWindow
 
 
 class CompareWorkspace(Workspace):
-    """One reference and up to eight sources.
+    """One reference and up to eight sources: pictures, viewports, segments, all linked.
 
     Parameters
     ----------
@@ -27,14 +37,81 @@ class CompareWorkspace(Workspace):
     def __init__(self, window: MainWindow) -> None:
         super().__init__()
         self.setObjectName("compare")
-        self._window = window
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
+        self._actions = window.actions_
+        self.bridge = CompareBridge(self)
+        self.working = Working(self.bridge, window.jobs, window.messages, self)
+        self.playback = ComparePlayback(self.bridge, self)
+        self.desk = CompareDesk(self.bridge, window.actions_)
+        self.empty = EmptyCompare(window.actions_)
+        self.answering = Answering(window, self)
+        self._stack = QStackedLayout(self)
+        self._stack.addWidget(self.empty)
+        self._stack.addWidget(self.desk)
+        self.bridge.changed.connect(self._follow)
+        self.bridge.ui_changed.connect(self._follow_ui)
+        self._show(self.bridge.state)
 
     def answers(self) -> Answers:
         """Answer the shared commands."""
-        return Answers(alone=True)
+        return self.answering.answers()
+
+    def tools(self) -> Sequence[QWidget]:
+        """What it adds to the toolbar."""
+        names = {
+            "compare-reference": "Reference", "compare-sources": "Sources",
+            "compare-true-speed": "True speed", "compare-multiples": "All sources",
+            "compare-matrix": "", "compare-picture": "",
+        }  # fmt: skip
+        return [self._actions.tool_button(name, text=text) for name, text in names.items()]
 
     def zones(self, opened: bool) -> Sequence[str]:
         """Files are dropped as reference or as sources."""
         return ("reference", "sources")
+
+    def drop(self, zone: str, paths: Sequence[Path]) -> bool:
+        """Compare dropped files."""
+        if zone == "reference" and paths:
+            self.working.set_reference(paths[0])
+            if paths[1:]:
+                self.working.add_sources(paths[1:])
+        else:
+            self.working.add_sources(paths)
+        return True
+
+    def open_paths(self, paths: Sequence[Path]) -> bool:
+        """Compare what was chosen from the recent files."""
+        self.working.add_sources(paths)
+        return True
+
+    def enter(self) -> None:
+        """Lay out as remembered."""
+        self.desk.restore()
+
+    def leave(self) -> None:
+        """Stop playing."""
+        self.bridge.set_ui(playing=False)
+
+    def remember(self) -> None:
+        """Remember the layout."""
+        self.desk.remember()
+
+    def _follow(self, old: ComparingState, new: ComparingState) -> None:
+        if not only_heads_differ(old, new):
+            self._show(new)
+            self.answers_changed.emit()
+
+    def _follow_ui(self, _old: CompareUi, _new: CompareUi) -> None:
+        self.answers_changed.emit()
+
+    def _show(self, state: ComparingState) -> None:
+        page: QWidget = self.desk if state.reference and state.sources else self.empty
+        self.empty.tell("" if state.reference is None else state.reference.name)
+        if self._stack.currentWidget() is not page:
+            self._stack.setCurrentWidget(page)
+
+    def changeEvent(self, event: QEvent) -> None:
+        """Follow the theme."""
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.StyleChange, QEvent.Type.PaletteChange):
+            self.empty.restyle()
+            self.desk.restyle()

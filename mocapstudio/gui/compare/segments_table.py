@@ -1,0 +1,180 @@
+"""The named parts: how long each is in the reference and in the source, and how late it comes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, Qt
+from PySide6.QtGui import QColor
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QHeaderView, QTableView, QVBoxLayout
+
+from mocapstudio.gui import theme
+from mocapstudio.gui.actions import Actions
+from mocapstudio.gui.compare import colours as kinds
+from mocapstudio.gui.compare.bridge import CompareBridge
+from mocapstudio.gui.compare.segment_facts import SegmentFacts, segment_facts
+from mocapstudio.gui.widgets.parts import Hint
+from mocapstudio.review.comparing import ComparingState
+from mocapstudio.review.comparing_state import only_heads_differ
+
+Index = QModelIndex | QPersistentModelIndex
+
+_COLUMNS = (
+    ("Name", "What is done; double click to change it"),
+    ("At", "Where it begins in the reference, seconds"),
+    ("Lasts", "How long it lasts in the reference, seconds"),
+    ("Source", "How long it lasts in the source, seconds"),
+    ("Delay", "How much later the source begins it, seconds; negative where it is ahead"),
+)
+
+
+class SegmentsModel(QAbstractTableModel):
+    """The segments of the reference, as the chosen source performs them.
+
+    Parameters
+    ----------
+    bridge
+        Where state comes from and intents go.
+    """
+
+    def __init__(self, bridge: CompareBridge) -> None:
+        super().__init__()
+        self._bridge = bridge
+        self._rows: tuple[SegmentFacts, ...] = ()
+
+    def show(self, state: ComparingState) -> None:
+        """Show other segments."""
+        self.beginResetModel()
+        self._rows = segment_facts(state.reference, state.linked, state.segments)
+        self.endResetModel()
+
+    def rowCount(self, _parent: Index = QModelIndex()) -> int:  # noqa: B008
+        """How many segments there are."""
+        return len(self._rows)
+
+    def columnCount(self, _parent: Index = QModelIndex()) -> int:  # noqa: B008
+        """Name, begin, durations, delay."""
+        return len(_COLUMNS)
+
+    def headerData(self, section: int, orientation: Qt.Orientation, role: int = 0) -> Any:
+        """Name a column."""
+        if orientation is not Qt.Orientation.Horizontal:
+            return None
+        if role == Qt.ItemDataRole.DisplayRole:
+            return _COLUMNS[section][0]
+        if role == Qt.ItemDataRole.ToolTipRole:
+            return _COLUMNS[section][1]
+        if role == Qt.ItemDataRole.TextAlignmentRole:
+            side = Qt.AlignmentFlag.AlignRight if section else Qt.AlignmentFlag.AlignLeft
+            return int(side | Qt.AlignmentFlag.AlignVCenter)
+        return None
+
+    def flags(self, index: Index) -> Qt.ItemFlag:
+        """Names can be edited."""
+        known = super().flags(index)
+        return known | Qt.ItemFlag.ItemIsEditable if index.column() == 0 else known
+
+    def setData(self, index: Index, value: Any, role: int = 0) -> bool:
+        """Rename a segment."""
+        if role != Qt.ItemDataRole.EditRole:
+            return False
+        self._bridge.sitting.rename_segment(index.row(), str(value))
+        return True
+
+    def data(self, index: Index, role: int = 0) -> Any:
+        """Say what stands in a cell."""
+        one, column = self._rows[index.row()], index.column()
+        if role in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.EditRole):
+            return one.texts()[column]
+        if role == Qt.ItemDataRole.TextAlignmentRole and column:
+            return int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        if role == Qt.ItemDataRole.ForegroundRole and column == 4 and one.delay is not None:
+            tolerance = self._bridge.state.parameters.tolerance
+            kind = 0 if abs(one.delay) <= tolerance else -1 if one.delay > 0 else 1
+            return QColor(kinds.timing(theme.current(), kind))
+        if role == Qt.ItemDataRole.ToolTipRole:
+            return one.name
+        return None
+
+
+class SegmentsView(QFrame):
+    """The table of segments, and what can be done with all of them.
+
+    Parameters
+    ----------
+    bridge
+        Where state comes from and intents go.
+    actions
+        The commands behind the buttons.
+    """
+
+    def __init__(self, bridge: CompareBridge, actions: Actions) -> None:
+        super().__init__()
+        self.setObjectName("compare-segments")
+        self.setProperty("role", "panel")
+        self._bridge = bridge
+        self.model = SegmentsModel(bridge)
+        self.table = QTableView()
+        self._prepare_table()
+        self._hint = Hint(self.table.viewport(), "segments-hint")
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addWidget(self.table, 1)
+        buttons = QHBoxLayout()
+        buttons.setContentsMargins(8, 6, 8, 8)
+        buttons.setSpacing(6)
+        for name, text in (("suggest", "Suggest"), ("load", "Load…"), ("save", "Save…")):
+            buttons.addWidget(actions.push_button(f"segment-{name}", text), 1)
+        column.addLayout(buttons)
+        self.table.clicked.connect(lambda at: bridge.sitting.select_segment(at.row()))
+        bridge.changed.connect(self._follow)
+        self._show(bridge.state)
+
+    def edit_name(self) -> None:
+        """Let the selected segment's name be typed."""
+        row = self._bridge.state.segment
+        if row is not None:
+            self.table.edit(self.model.index(row, 0))
+
+    def restyle(self) -> None:
+        """Take over the colours of the theme in force."""
+        self._show(self._bridge.state)
+
+    def _prepare_table(self) -> None:
+        table = self.table
+        table.setObjectName("segments-table")
+        table.setModel(self.model)
+        table.setShowGrid(False)
+        table.setSelectionBehavior(QTableView.SelectionBehavior.SelectRows)
+        table.setSelectionMode(QTableView.SelectionMode.SingleSelection)
+        table.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
+        table.setEditTriggers(QTableView.EditTrigger.DoubleClicked)
+        table.setWordWrap(False)
+        table.setFont(theme.numbers_font())
+        table.verticalHeader().hide()
+        table.verticalHeader().setDefaultSectionSize(24)
+        head = table.horizontalHeader()
+        head.setHighlightSections(False)
+        head.setMinimumSectionSize(20)
+        modes = QHeaderView.ResizeMode
+        for section, width in enumerate((0, 50, 50, 58, 62)):
+            head.setSectionResizeMode(section, modes.Fixed if width else modes.Stretch)
+            if width:
+                head.resizeSection(section, width)
+
+    def _follow(self, old: ComparingState, new: ComparingState) -> None:
+        if not only_heads_differ(old, new):
+            self._show(new)
+
+    def _show(self, state: ComparingState) -> None:
+        self.model.show(state)
+        if state.segment is not None:
+            self.table.selectRow(state.segment)
+        empty = not state.segments and state.reference is not None
+        self._hint.say(
+            "Drag in the lowest lane of the pictures to name a part of the reference,"
+            " or let some be suggested."
+            if empty
+            else ""
+        )
