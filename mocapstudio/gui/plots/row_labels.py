@@ -24,6 +24,7 @@ from mocapstudio.gui.plots.time_plot import LEFT_GUTTER
 _LIMB_ROOM = 66.0
 _LEGIBLE = 11
 _LINE = 13.0
+_LIMB_LINE = 10.0
 
 
 class RowLabels(QWidget):
@@ -93,8 +94,9 @@ class RowLabels(QWidget):
         p = QPainter(self)
         p.fillRect(self.rect(), QColor(look.panel))
         p.setFont(small_font())
+        last = -_LINE
         for group in self._rows.groups:
-            self._draw_limb(p, look, group)
+            last = self._draw_limb(p, look, group, last)
         metrics = QFontMetricsF(small_font())
         for name in self.shown_names():
             self._draw_name(p, look, metrics, name)
@@ -107,18 +109,21 @@ class RowLabels(QWidget):
             )
         p.end()
 
-    def _draw_limb(self, p: QPainter, look: themes.Theme, group: Group) -> None:
+    def _draw_limb(self, p: QPainter, look: themes.Theme, group: Group, last: float) -> float:
+        """Draw a limb's name where it has room below the one at height `last`."""
         top, bottom = (self._top + edge for edge in self._rows.extent(group))
         chosen = bool(self._selected) and bool(self._selected & set(group.rows))
         p.setPen(QPen(QColor(look.faint if chosen else look.border), 1))
         edge = _LIMB_ROOM + 6
         p.drawLine(QPointF(edge, top), QPointF(edge, max(bottom - 1, top)))
         p.setPen(QColor(look.text if chosen else look.muted))
-        if bottom - top < 9 and group.name == "head" and self._rows.row_height < 5:
-            return
-        room = QRectF(0, 0.5 * (top + bottom) - 8, _LIMB_ROOM, 16)
+        middle = 0.5 * (top + bottom)
+        if middle - last < _LIMB_LINE:
+            return last
+        room = QRectF(0, middle - 8, _LIMB_ROOM, 16)
         flags = int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         p.drawText(room, flags, group.name)
+        return middle
 
     def _draw_name(
         self, p: QPainter, look: themes.Theme, metrics: QFontMetricsF, name: str
