@@ -171,6 +171,7 @@ def _comparison(
         unreliable=None if (weight > 0).all() else weight == 0,
         features=chosen.features,
         true_speed=chosen.true_speed,
+        source_rows=tuple(other.rows[j].name for j in pair.matched.source),
     )
 
 

@@ -72,6 +72,8 @@ class Comparison:
         What was compared: ``"box"``, ``"root"`` or ``"rotations"``.
     true_speed
         Whether `timing` classifies `misalignment`, or `misalignment_relative`.
+    source_rows
+        (N,) the rows as the source names them; empty where nobody said.
     """
 
     reference: str
@@ -95,3 +97,4 @@ class Comparison:
     unreliable: NDArray[np.bool_] | None = None
     features: str = "box"
     true_speed: bool = False
+    source_rows: tuple[str, ...] = ()
