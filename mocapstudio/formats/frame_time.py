@@ -11,10 +11,11 @@ NO_RATE = Fraction(100)
 """Frames a second where a file states none: the rate of the inertial suits that do so."""
 
 _WHOLE_RATES = (120, 60, 30, 24, 25, 50, 100, 240, 200, 48, 90, 150, 250, 300, 500, 1000, 125, 360)
-_RATES = (
+USUAL_RATES = (
     *map(Fraction, _WHOLE_RATES),
     *(Fraction(nominal * 1000, 1001) for nominal in (120, 60, 30, 24, 240)),
 )
+"""Frames a second of cameras and suits, the likelier ones first."""
 
 # Seconds a frame (or milliseconds, or frames a second, where a file mistakes them).
 _SHORTEST, _LONGEST = 1e-5, 1000.0
@@ -35,16 +36,16 @@ def rate_from_frame_time(text: str) -> Fraction:
     _, _, decimals = text.lower().partition("e")[0].partition(".")
     exponent = text.lower().partition("e")[2]
     ulp = Fraction(10) ** (int(exponent or 0) - len(decimals))
-    if Fraction(1) / exact in _RATES:
+    if Fraction(1) / exact in USUAL_RATES:
         return 1 / exact
-    near = [r for r in _RATES if round(1 / r / ulp) * ulp == exact]
-    near += [r for r in _RATES if 1 / r // ulp * ulp == exact]
+    near = [r for r in USUAL_RATES if round(1 / r / ulp) * ulp == exact]
+    near += [r for r in USUAL_RATES if 1 / r // ulp * ulp == exact]
     if near and abs(near[0] * exact - 1) < Fraction(1, 20):
         return near[0]
     whole = round(1 / exact)
     if whole and round(Fraction(1, whole) / ulp) * ulp == exact:
         return Fraction(whole)
-    close = [r for r in _RATES if abs(1 / r - exact) <= min(ulp, exact / 20_000)]
+    close = [r for r in USUAL_RATES if abs(1 / r - exact) <= min(ulp, exact / 20_000)]
     return close[0] if close else (1 / exact).limit_denominator(1001)
 
 

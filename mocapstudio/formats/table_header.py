@@ -81,7 +81,8 @@ def read_head(reading: Reading, sheet: Sheet) -> Head:
     sheet = with_decimal(reading, sheet, first)
     width = len(sheet.cells(first))
     whose, names_line = _positions(reading, sheet, first, keys, width)
-    leading = _leading(sheet, names_line, first)
+    unnamed = names_line == keys.names_line and bool(keys.names)
+    leading = _unnamed(_first_position(whose)) if unnamed else _leading(sheet, names_line, first)
     labels = unique_labels([one.base for one in whose], names_line + 1, reading.problems)
     places = tuple((one.cells["x"], one.cells["y"], one.cells["z"]) for one in whose)
     columns = Columns(
@@ -177,6 +178,16 @@ def _kind_row(row: Sequence[str], width: int) -> list[str] | None:
             return None
         found.append(name.kind if name is not None and known else "")
     return found if any(found) else None
+
+
+def _first_position(whose: Sequence[Triple]) -> int:
+    """First column that holds a position."""
+    return min(cell for one in whose for cell in one.cells.values())
+
+
+def _unnamed(columns: int) -> Leading:
+    """Columns before the positions of a table without a row of names, as Qualisys orders them."""
+    return Leading(0 if columns else None, 1 if columns > 1 else None)
 
 
 def _leading(sheet: Sheet, names_line: int, first: int) -> Leading:

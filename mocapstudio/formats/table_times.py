@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapstudio.formats.frame_time import rate_from_frame_time
+from mocapstudio.formats.frame_time import USUAL_RATES, rate_from_frame_time
 
 Array = NDArray[np.float64]
 
@@ -17,6 +17,8 @@ _TOLERATED = 0.1
 # Steps over which a sample is still interpolated from its neighbours.
 _WIDEST = 2.5
 _MOST_ROWS = 4
+# How far a usual rate may be from the mean step.
+_NEAR = 0.02
 _FASTEST, _SLOWEST = 1e-5, 1000.0
 
 
@@ -64,11 +66,22 @@ def read_clock(times: Array, resolution: float) -> Clock:
     if not _FASTEST <= step <= _SLOWEST:
         return Clock(None, why=f"steps of {step:g} s are no frames")
     off = departure(times, step)
-    known = resolution / (len(times) - 1) if step == mean else resolution
-    decimals = int(np.clip(np.floor(-np.log10(max(known, 1e-9))), 1, 9))
-    text = f"{step:.{decimals}f}"
-    rate = rate_from_frame_time(text if float(text) > 0 else f"{step:.9f}")
+    rate = _usual_rate(times, step, resolution) or rate_from_frame_time(f"{step:.9f}")
     return Clock(rate, off, off <= _TOLERATED * step + resolution)
+
+
+def _usual_rate(times: Array, step: float, resolution: float) -> Fraction | None:
+    """Return the likeliest of the usual and whole rates that explains the times, if any does."""
+    count = np.arange(len(times))
+
+    def misses(seconds: float) -> float:
+        return float(np.ptp(times - seconds * count)) / 2
+
+    # Half of the last digit is lost by rounding, all of it where digits are cut off.
+    allowed = max(1.01 * resolution, 1.2 * misses(step)) + 1e-9 * float(np.abs(times).max())
+    near = [rate for rate in USUAL_RATES if abs(float(rate) * step - 1) < _NEAR]
+    whole = [Fraction(round(1 / step))] if step < 1 else []
+    return next((rate for rate in near + whole if misses(1 / float(rate)) <= allowed), None)
 
 
 def departure(times: Array, step: float) -> float:
