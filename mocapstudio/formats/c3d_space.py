@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapstudio.formats.c3d_parameters import Parameters
-from mocapstudio.formats.guesses import turn_to_y_up
+from mocapstudio.formats.guesses import turn_to_inside
 from mocapstudio.formats.marker_guesses import guess_marker_unit, guess_marker_up
 from mocapstudio.formats.options import UNITS, ReadOptions, Up
 from mocapstudio.formats.report import Problem
@@ -172,19 +172,19 @@ def _to_inside(
     problems: list[Problem],
 ) -> Array:
     if options.up is not None:
-        return turn_to_y_up(options.up)
+        return turn_to_inside(options.up, options.forward)
     stated = _SCREEN.match(parameters.text("POINT", "Y_SCREEN").strip().upper())
     if stated is not None:
         up = _AXES[stated[2]]
         # What points down: half a turn about another axis brings it up.
         half = rot.about_axis(0 if up != "x" else 2, np.array(np.pi if stated[1] == "-" else 0.0))
-        return rot.multiply(turn_to_y_up(up), half)
+        return rot.multiply(turn_to_inside(up, options.forward), half)
     up, why = guess_marker_up(seen, labels, "z")
     if why.startswith("usual"):
         up, why = _by_spread(seen)
     done = f"guessed {up.upper()} up ({why})"
     problems.append(Problem(None, "no up axis stated", done, "up", guess=True))
-    return turn_to_y_up(up)
+    return turn_to_inside(up, options.forward)
 
 
 def _by_spread(seen: Array) -> tuple[Up, str]:

@@ -14,6 +14,7 @@ from mocapstudio.formats.bvh_write import write_bvh
 from mocapstudio.formats.c3d_layout import looks_like_c3d
 from mocapstudio.formats.c3d_read import read_c3d
 from mocapstudio.formats.c3d_write import write_c3d
+from mocapstudio.formats.gltf_write import looks_like_gltf, write_gltf
 from mocapstudio.formats.options import ReadOptions, WriteOptions
 from mocapstudio.formats.report import ImportReport
 from mocapstudio.formats.table_read import looks_like_csv, looks_like_tsv, read_csv, read_tsv
@@ -48,7 +49,7 @@ class Format:
     looks_like
         Tells the format by a file's first bytes.
     read
-        From a file's bytes to takes.
+        From a file's bytes to takes, or None where the format is only written.
     write
         From a take to a file's bytes, or None where the format does not hold joints.
     write_markers
@@ -62,7 +63,7 @@ class Format:
     name: str
     suffixes: tuple[str, ...]
     looks_like: Callable[[bytes], bool]
-    read: Reader
+    read: Reader | None
     write: Writer | None = None
     write_markers: MarkerWriter | None = None
     beside: Callable[[Take, Path], dict[Path, bytes]] | None = None
@@ -92,12 +93,14 @@ FORMATS = (
         common=True,
     ),
     Format("c3d", (".c3d",), looks_like_c3d, read_c3d, write_markers=write_c3d),
+    Format("glb", (".glb",), looks_like_gltf, None, write_gltf(binary=True)),
+    Format("gltf", (".gltf",), looks_like_gltf, None, write_gltf(binary=False)),
 )
 
 
 def readable_suffixes() -> tuple[str, ...]:
     """Suffixes of the files that can be read, lower case, with the dot."""
-    return tuple(suffix for one in FORMATS for suffix in one.suffixes)
+    return tuple(suffix for one in FORMATS if one.read is not None for suffix in one.suffixes)
 
 
 def is_take(path: Path) -> bool:
@@ -107,8 +110,8 @@ def is_take(path: Path) -> bool:
     """
     suffix = path.suffix.lower()
     one = next((one for one in FORMATS if suffix in one.suffixes), None)
-    if one is None or not one.common:
-        return one is not None
+    if one is None or one.read is None or not one.common:
+        return one is not None and one.read is not None
     try:
         with path.open("rb") as file:
             head = file.read(_READ_TO_TELL)
@@ -142,7 +145,8 @@ def read_any(
     except (OSError, ValueError) as bad:
         # A ValueError is a null byte in the name.
         raise FileError(path, (getattr(bad, "strerror", None) or str(bad)).lower()) from bad
-    found, report = _format_of(path, data[:_SNIFFED]).read(path, data, options or ReadOptions())
+    reader = _reader_of(path, data[:_SNIFFED])
+    found, report = reader(path, data, options or ReadOptions())
     return list(found), report
 
 
@@ -230,12 +234,12 @@ def _pieces(
     )
 
 
-def _format_of(path: Path, head: bytes) -> Format:
-    for one in FORMATS:
-        if path.suffix.lower() in one.suffixes:
-            return one
-    for one in FORMATS:
-        if one.looks_like(head):
-            return one
+def _reader_of(path: Path, head: bytes) -> Reader:
+    fitting = [one for one in FORMATS if path.suffix.lower() in one.suffixes]
+    fitting += [one for one in FORMATS if one.looks_like(head)]
     known = ", ".join(readable_suffixes())
-    raise FileError(path, f"cannot read {path.suffix or 'without suffix'!r}; known are {known}")
+    if not fitting:
+        raise FileError(path, f"cannot read {path.suffix or 'without suffix'!r}; known are {known}")
+    if fitting[0].read is None:
+        raise FileError(path, f"{fitting[0].suffixes[0]} is written only; read are {known}")
+    return fitting[0].read
