@@ -14,7 +14,7 @@ from mocapstudio.motion.topology import topology
 
 Array = NDArray[np.float64]
 
-_ROOT_STIFFNESS = np.array([200.0, 100.0, 200.0])
+ROOT_STIFFNESS = np.array([200.0, 100.0, 200.0])
 """Per metre, against 1 per radian of a joint that turns as widely as a hip: the hips give way
 where a leg is nearly straight, and hardly elsewhere."""
 
@@ -88,7 +88,7 @@ def freedom(
     ranges: JointRanges,
     *,
     reach: float = 0.0,
-    factor: Array | None = None,
+    place_stiffness: Array = ROOT_STIFFNESS,
 ) -> Freedom:
     """Let some joints turn, each the more easily about an axis the more it turns about it anyway.
 
@@ -100,19 +100,14 @@ def freedom(
         How far each joint of the skeleton turns (see `ranges.joint_ranges`).
     reach
         Metres that the body may be displaced, or 0.
-    factor
-        (J,) further factor on the stiffness of every joint of the skeleton, or None.
+    place_stiffness
+        (3,) per metre: that of the body's place, along x, y, z.
     """
     chosen = tuple(sorted(set(joints)))
     at = list(chosen)
-    turning = ranges.stiffness[at] if factor is None else ranges.stiffness[at] * factor[at, None]
-    place = _ROOT_STIFFNESS if reach > 0 else np.zeros(0)
-    return Freedom(
-        chosen,
-        np.ascontiguousarray(ranges.axes[at]),
-        np.concatenate([place, turning.ravel()]),
-        reach,
-    )
+    place = place_stiffness if reach > 0 else np.zeros(0)
+    stiffness = np.concatenate([place, ranges.stiffness[at].ravel()])
+    return Freedom(chosen, np.ascontiguousarray(ranges.axes[at]), stiffness, reach)
 
 
 def chain(skeleton: Skeleton, joint: int, ranges: JointRanges) -> tuple[int, ...]:

@@ -33,9 +33,9 @@ _TURN_WEIGHT = 2.0
 _SMOOTHNESS = 2.5
 """Per metre: that of a joint 0.4 m from the end of its limb, 1 per radian."""
 _LEAST_LEVER = 0.05
-_FADES = 5.0
+_FADES = 3.3
 """The easing in lengths over which a smooth departure fades by e."""
-_ORDER = 3
+_ORDER = 2
 
 
 def cut(take: Take, holds: Sequence[Hold], easing: float) -> list[tuple[int, int]]:

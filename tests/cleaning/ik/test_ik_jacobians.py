@@ -190,5 +190,3 @@ def test_body_below_a_turned_reference_moves_in_the_world(take):
     moved = Posed(view, free, np.tile([0.01, 0.0, 0.0], (FRAMES, 1))).point(foot, np.zeros(3))
     expected = 0.01 / np.sqrt(1.01)
     np.testing.assert_allclose(moved - still, [[expected, 0, 0]] * FRAMES, atol=1e-12)
-
-
