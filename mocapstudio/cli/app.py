@@ -26,6 +26,7 @@ COMMANDS = {
     "clean": "Repair all that is found in takes, and write them.",
     "contacts": "Find or read contacts, measure foot skate, remove it.",
     "convert": "Write a take in another format.",
+    "compare": "Compare performances with a reference: early, late, different.",
     "export": "Write what was decided in a session, without the desk.",
     "report": "Write a session's report.",
     "evaluate": "Measure detection, repair and speed on takes with known errors.",
