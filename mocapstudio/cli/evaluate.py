@@ -27,6 +27,7 @@ class What(StrEnum):
 
     DETECTION = "detection"
     REPAIR = "repair"
+    CONTACTS = "contacts"
     SPEED = "speed"
 
 
@@ -45,7 +46,11 @@ def evaluate(
     ],
     truth: Annotated[
         Path | None,
-        typer.Option("--truth", metavar="FILE", help="Score against labels made by hand (JSON)."),
+        typer.Option(
+            "--truth",
+            metavar="FILE",
+            help="Score against labels made by hand (JSON); of contacts also a folder of them.",
+        ),
     ] = None,
     cleaned: Annotated[
         Path | None,
@@ -63,7 +68,7 @@ def evaluate(
         Path | None, typer.Option("--html", metavar="PATH", help="Write a page with pictures.")
     ] = None,
 ) -> None:
-    """Measure detection, repair or speed on your own takes.
+    """Measure detection, repair, contacts or speed on your own takes.
 
     Errors of known place and shape are injected into the takes, which should be clean; what was
     tuned, was tuned on other takes than those measured.
@@ -77,10 +82,16 @@ def evaluate(
         raise MocapError("--truth and --cleaned exclude each other")
     if cleaned is not None and what is What.SPEED:
         raise MocapError("speed has no truth to be scored against")
-    if truth is not None and what is not What.DETECTION:
+    if cleaned is not None and what is What.CONTACTS:
+        raise MocapError("contacts are measured against --truth")
+    if truth is not None and what not in {What.DETECTION, What.CONTACTS}:
         raise MocapError("labels tell where errors are, not what would be right: use --cleaned")
     sizes = _sizes(context)
-    if truth is not None:
+    if what is What.CONTACTS:
+        from mocapstudio.evaluation import contacts_report
+
+        work = contacts_report.contacts(data, truth, seed, limit)
+    elif truth is not None:
         work = reports.against_labels(data, truth, sizes[-1])
     elif cleaned is not None:
         work = reports.against_cleaned(data, cleaned, sizes[-1], repair=what is What.REPAIR)
