@@ -18,6 +18,7 @@ Array = NDArray[np.float64]
 _VELOCITY_FROM = 0.08
 _FEWEST = 3
 _COMPANIONS = 5
+_BEGINNINGS = 6
 # Of a distance, and metres: how far two markers of one body may move against each other.
 _RIGID = (0.04, 0.012)
 _TEMPLATE_FRAMES = 60
@@ -154,13 +155,19 @@ def fill_rigid(take: MarkerTake, spans: Iterable[Declared] | None = None) -> Mar
 
 def companions(measured: Distances, marker: int) -> list[int]:
     """Up to five markers that keep their distance to a marker and to each other, best first."""
+    near = [int(other) for other in measured.nearest(marker)]
+    # The most rigid pair may be a bone between two bodies: others get to begin, too.
+    groups = [_grown(measured, marker, first, near) for first in near[:_BEGINNINGS]]
+    return max(groups, key=len, default=[])
+
+
+def _grown(measured: Distances, marker: int, first: int, near: list[int]) -> list[int]:
     found: list[int] = []
-    for other in measured.nearest(marker):
+    for other in [first, *(one for one in near if one != first)]:
         group = [marker, *found]
-        lengths = measured.length[other, group]
-        allowed = np.minimum(_RIGID[0] * lengths, _RIGID[1])
+        allowed = np.minimum(_RIGID[0] * measured.length[other, group], _RIGID[1])
         if (measured.spread[other, group] <= allowed).all():
-            found.append(int(other))
+            found.append(other)
         if len(found) == _COMPANIONS:
             break
     return found

@@ -86,3 +86,38 @@ def test_joints_can_be_renamed(mocapstudio, source: Path, tmp_path: Path) -> Non
     (take,), _ = formats.read(tmp_path / "out.bvh")
     assert "L_Shin" in take.skeleton.names
     assert "LeftShin" not in take.skeleton.names
+
+
+def test_joints_become_tables(mocapstudio, source: Path, tmp_path: Path) -> None:
+    for words in (("positions.csv",), ("angles.tsv", "--table", "angles", "--order", "xyz")):
+        done = mocapstudio("convert", source, *words)
+        assert done.returncode == 0, done.stderr
+    (take,), _ = formats.read(source)
+    (table,), _ = formats.read_any(tmp_path / "positions.csv")
+    np.testing.assert_allclose(table.positions, take_pose(take)[0], atol=1e-6)
+    names = (tmp_path / "angles.tsv").read_text().splitlines()[0].split("\t")
+    assert names[5:8] == [f"Hips {axis}rotation (deg)" for axis in "XYZ"]
+
+
+def test_markers(mocapstudio, tmp_path: Path) -> None:
+    rows = [f"{i / 50:.2f},{i},1700,2,,,,{i},20,5" for i in range(5)]
+    names = ",".join(f"{label} {axis}" for label in ("Head", "Hips", "Toe") for axis in "XYZ")
+    text = "\n".join([f"Time,{names}", *rows]) + "\n"
+    (tmp_path / "in.csv").write_text(text)
+    (tmp_path / "map.json").write_text('{"Toe": "LTOE"}')
+    for words in (
+        ("in.csv", "same.csv"),
+        ("in.csv", "out.trc", "--fps", "29.97"),
+        ("out.trc", "out.tsv", "--joint-map", "map.json", "--out-up", "z"),
+    ):
+        done = mocapstudio("convert", *words)
+        assert done.returncode == 0, done.stderr
+    assert (tmp_path / "same.csv").read_text() == text
+    (old,), _ = formats.read_any(tmp_path / "in.csv")
+    (new,), _ = formats.read_any(tmp_path / "out.tsv", formats.ReadOptions(up="z"))
+    assert new.labels == ("Head", "Hips", "LTOE")
+    assert float(new.rate) == pytest.approx(30_000 / 1001)
+    np.testing.assert_allclose(new.positions, old.positions, atol=1e-7)
+    done = mocapstudio("convert", "in.csv", "out.bvh")
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: out.bvh: -: cannot write markers as '.bvh'; known are")

@@ -87,3 +87,50 @@ def test_real_takes(mocapstudio, data: Path) -> None:
         "jesse_dance": (1007, 60),
         "wave_hello": (839, 27),
     }
+
+
+def marker_table(path: Path, rate: float | None = 50.0) -> Path:
+    labels = ("Head", "Hips", "LeftToe")
+    lines = ["Time," + ",".join(f"{label} {axis}" for label in labels for axis in "XYZ")]
+    for i in range(10):
+        time = 0.0 if rate is None else i / rate
+        lines.append(f"{time:.3f},1,1700,2,3,{900 + i},4,0,{'0' if i < 2 else '20'},0")
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def test_markers(mocapstudio, tmp_path: Path) -> None:
+    [file] = inspected(mocapstudio, marker_table(tmp_path / "take.csv"))
+    assert set(file) >= FILE_KEYS
+    assert (file["format"], file["frames"], file["fps"], file["unit"]) == ("csv", 10, 50.0, 0.001)
+    assert (file["joints"], file["markers"]) == ([], ["Head", "Hips", "LeftToe"])
+    assert file["missing"] == {"Head": 0, "Hips": 0, "LeftToe": 2}
+    told = {problem["what"]: problem for problem in file["problems"]}
+    assert told["2 positions are exactly 0 0 0"]["line"] == 2
+    assert told["no unit stated"]["option"] == "--unit"
+    assert told["no up axis stated"]["option"] == "--up"
+    done = mocapstudio("inspect", tmp_path / "take.csv")
+    assert "3 markers, 10 frames at 50 fps" in done.stdout
+
+
+def test_a_rate_that_nothing_tells_is_asked_for(mocapstudio, tmp_path: Path) -> None:
+    path = marker_table(tmp_path / "take.csv", rate=None)
+    done = mocapstudio("inspect", path)
+    assert done.returncode == 2
+    assert done.stderr == f"error: {path}: -: no frame rate (all times are alike): --fps tells it\n"
+    [file] = inspected(mocapstudio, path, "--fps", "100")
+    assert file["fps"] == 100.0
+
+
+def test_the_user_decides_what_was_guessed(mocapstudio, figure, tmp_path: Path) -> None:
+    path = figure(seconds=1).write(tmp_path / "take.bvh")
+    [file] = inspected(
+        mocapstudio,
+        *(path, "--unit", "0.02", "--up", "z", "--forward", "-x", "--root-offset", "add"),
+        *("--angles", "radians", "--t-pose", "keep"),
+    )
+    assert file["unit"] == 0.02
+    assert file["problems"] == []
+    done = mocapstudio("inspect", path, "--up", "z", "--forward", "z")
+    assert done.returncode == 2
+    assert done.stderr == "error: forward z is along the up axis z\n"
