@@ -8,7 +8,7 @@ spans with a confidence. Contacts between performers are found in `partners`.
 from __future__ import annotations
 
 from collections.abc import Generator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,8 @@ from mocapstudio.cleaning.contacts.floor import fit_floor
 from mocapstudio.cleaning.contacts.model import Contact, ContactPoint, Floor, Target
 from mocapstudio.cleaning.contacts.partners import held_by
 from mocapstudio.cleaning.contacts.points import contact_points, point_positions
-from mocapstudio.cleaning.contacts.speeds import one_sided, runs, smoothed
+from mocapstudio.cleaning.contacts.spans import contact_spans, set_down
+from mocapstudio.cleaning.contacts.speeds import one_sided, smoothed
 from mocapstudio.cleaning.contacts.states import learnt, log_speed, posterior, usual
 from mocapstudio.motion.kinematics import take_pose
 from mocapstudio.motion.progress import Progress, run
@@ -26,9 +27,6 @@ from mocapstudio.motion.take import Take
 from mocapstudio.motion.topology import topology
 
 Array = NDArray[np.float64]
-
-_SHORTEST = 0.05
-"""Seconds: shorter contacts are none, shorter gaps are bridged."""
 
 
 def detect_contacts(
@@ -78,16 +76,18 @@ def detecting(
     chosen = tuple(contact_points(take, pose) if points is None else points)
     positions = point_positions(take, chosen, pose)
     yield Progress(0.3, "floor")
-    probability, normal = _on_floor(take, chosen, positions, pose[0])
+    on_floor = _on_floor(take, chosen, positions, pose[0])
     yield Progress(0.8, "spans")
     drawn = tuple(contact for contact in keep if contact.drawn)
     found = []
+    rate, leg = float(take.rate), leg_length(take.skeleton)
     for column, point in enumerate(chosen):
+        sure, place = on_floor.probability[:, column], positions[:, column]
         taken = [(c.start, c.end) for c in drawn if (c.joint, c.point) == point.key]
-        for start, end in _spans(probability[:, column], take, taken):
-            height = float(np.median(positions[start:end, column, 1]))
-            sure = float(probability[start:end, column].mean())
-            found.append(_contact(point, start, end, Floor(height, normal), sure))
+        for span in contact_spans(sure, rate, take.span, taken):
+            for start, end in set_down(span, place, on_floor.speed[:, column], rate, leg):
+                target = Floor(float(np.median(place[start:end, 1])), on_floor.normal)
+                found.append(_contact(point, start, end, target, float(sure[start:end].mean())))
     others = partners if isinstance(partners, Mapping) else {one.name: one for one in partners}
     if others:
         yield Progress(0.9, "hands of partners")
@@ -99,21 +99,29 @@ def detecting(
     return _in_order(drawn, found)
 
 
+@dataclass(frozen=True, eq=False)
+class _OnFloor:
+    """(F, P) probability that each point rests on the floor, and its speed in legs a second."""
+
+    probability: Array
+    speed: Array
+    normal: tuple[float, float, float] = (0.0, 1.0, 0.0)
+
+
 def _on_floor(
     take: Take, points: Sequence[ContactPoint], positions: Array, joints: Array
-) -> tuple[Array, tuple[float, float, float]]:
-    """(F, P) probability that each point rests on the floor, and the floor's normal."""
+) -> _OnFloor:
     rate, leg = float(take.rate), leg_length(take.skeleton)
     parts = topology(take.skeleton)
     hands = {take.skeleton.names[hand.joint] for hand in extremities(take.skeleton, "arm")}
     feet = [i for i, point in enumerate(points) if point.joint not in hands]
     limbs = [parts.limbs.index(parts.limb_of(take.skeleton.index[points[i].joint])) for i in feet]
-    result = np.zeros(positions.shape[:2])
-    if not feet:
-        return result, (0.0, 1.0, 0.0)
-    floor = fit_floor(positions[:, feet], rate, leg, joints[:, parts.hips], limbs)
     velocity = one_sided(smoothed(positions, rate), rate)
     speed = np.linalg.norm(velocity, axis=2) / leg
+    result = np.zeros(positions.shape[:2])
+    if not feet:
+        return _OnFloor(result, speed)
+    floor = fit_floor(positions[:, feet], rate, leg, joints[:, parts.hips], limbs)
     height = (positions[:, feet, 1] - floor.under) / leg
     for kind in {points[i].point for i in feet}:
         mine = [i for i, f in enumerate(feet) if points[f].point == kind]
@@ -122,23 +130,7 @@ def _on_floor(
         odds = model.log_odds(log_speed(speed[:, columns]), height[:, mine])
         result[:, columns] = posterior(odds, rate)
     x, y, z = floor.normal
-    return result, (float(x), float(y), float(z))
-
-
-def _spans(
-    probability: Array, take: Take, taken: Sequence[tuple[int, int]]
-) -> list[tuple[int, int]]:
-    """Half-open spans of one point's contacts, none too short, none over spans that are taken."""
-    fewest = max(1, round(_SHORTEST * float(take.rate)))
-    contact = probability > 0.5
-    low, high = take.span
-    for start, end in runs(~contact):
-        if end - start < fewest and start > low and end < high:
-            contact[start:end] = True
-    contact[:low] = contact[high:] = False
-    for start, end in taken:
-        contact[start:end] = False
-    return [(a, b) for a, b in runs(contact) if b - a >= fewest]
+    return _OnFloor(result, speed, (float(x), float(y), float(z)))
 
 
 def _contact(
