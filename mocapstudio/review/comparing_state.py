@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from mocapstudio.comparison.model import Comparison, Segment
 from mocapstudio.comparison.parameters import ComparisonParameters
+from mocapstudio.comparison.segments import CarriedSegment, carried
 from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.motion.take import Take
 
@@ -54,6 +56,12 @@ class Linked:
         apart = np.abs(self._pairs - np.array([reference, source])).sum(axis=1)
         return float(self.seconds[int(np.argmin(apart))])
 
+    def nearest(self, reference: float, source: float) -> tuple[int, int]:
+        """Reference and source frame of the step of the path nearest to a pair."""
+        apart = np.abs(self._pairs - np.array([reference, source])).sum(axis=1)
+        frame, other = self._pairs[int(np.argmin(apart))]
+        return int(frame), int(other)
+
     def reference_of(self, source: float) -> int:
         """Reference frame that matches a source frame."""
         at = min(max(round(source), 0), self.frames[1] - 1)
@@ -63,12 +71,9 @@ class Linked:
         """Source frame that matches a reference frame: the middle of all that do."""
         return round(float(np.interp(reference, *self._inverse)))
 
-    def carried(self, segment: Segment) -> tuple[int, int]:
-        """Half-open span of source frames that a segment of the reference carries over to."""
-        last = self.frames[0] - 1
-        start = int(self.matched[min(segment.start, last)])
-        end = int(self.matched[min(segment.end - 1, last)]) + 1
-        return start, max(end, start + 1)
+    def carried(self, segments: Sequence[Segment]) -> tuple[CarriedSegment, ...]:
+        """Segments of the reference with what answers to each in the source."""
+        return carried(segments, self.comparison)
 
     @cached_property
     def matched(self) -> NDArray[np.int64]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject
 
 from mocapstudio.gui.compare.bridge import Alignment
+from mocapstudio.gui.compare.exporting import Exporting
 from mocapstudio.gui.compare.segmenting import Segmenting
 from mocapstudio.gui.dialogs.files import FileRequest, ask_for_files
 from mocapstudio.gui.workspaces.workspace import Answers
@@ -38,7 +39,9 @@ class Answering(QObject):
         self._window, self._workspace = window, workspace
         self._bridge = workspace.bridge
         self._segmenting = Segmenting(window, workspace)
-        self._slots = self._files() | self._views() | self._heads() | self._segmenting.slots()
+        self._exporting = Exporting(window, workspace)
+        self._slots = self._files() | self._views() | self._heads()
+        self._slots |= self._segmenting.slots() | self._exporting.slots()
 
     def answers(self) -> Answers:
         """Say what is answered, and what of it can be done now."""

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QFrame, QSplitter, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QLabel, QSplitter, QStackedWidget, QVBoxLayout, QWidget
 
 from mocapstudio.gui import settings
 from mocapstudio.gui.actions import Actions
 from mocapstudio.gui.compare.bridge import CompareBridge, CompareUi
+from mocapstudio.gui.compare.matrix_view import MatrixView
+from mocapstudio.gui.compare.multiples import MultiplesView
 from mocapstudio.gui.compare.performances import PerformancesView
 from mocapstudio.gui.compare.pictures import PicturesView
 from mocapstudio.gui.compare.segments_table import SegmentsView
@@ -39,14 +41,23 @@ class CompareDesk(QWidget):
         self.segments = SegmentsView(bridge, actions)
         self._side = QStackedWidget()
         self._side.addWidget(self.segments)
+        self.matrix = MatrixView(bridge)
+        self._side.addWidget(self.matrix)
         self._below = QStackedWidget()
         self._below.addWidget(self.pictures)
+        self.multiples = MultiplesView(bridge)
+        self._below.addWidget(self.multiples)
         self._columns = QSplitter(Qt.Orientation.Horizontal)
         self._rows = QSplitter(Qt.Orientation.Vertical)
         self._shared_out = False
         self._lay_out(actions)
         bridge.ui_changed.connect(self._show_ui)
         self._show_ui(bridge.ui, bridge.ui)
+
+    @property
+    def below(self) -> QWidget:
+        """What is shown below the viewports: pictures of one source, or strips of all."""
+        return self.multiples if self._bridge.ui.multiples else self.pictures
 
     def _lay_out(self, actions: Actions) -> None:
         centre = QFrame()
@@ -59,7 +70,10 @@ class CompareDesk(QWidget):
         inner = QVBoxLayout(side)
         inner.setContentsMargins(0, 0, 0, 0)
         inner.setSpacing(0)
-        inner.addWidget(header("Segments", actions.tool_button("compare-matrix")))
+        head = header("Segments", actions.tool_button("compare-matrix"))
+        titles = head.findChildren(QLabel)
+        self._title = titles[0]
+        inner.addWidget(head)
         inner.addWidget(self._side, 1)
         for splitter, name in ((self._columns, "columns"), (self._rows, "rows")):
             splitter.setObjectName(f"compare-{name}")
@@ -76,8 +90,9 @@ class CompareDesk(QWidget):
         whole.addWidget(self._rows)
 
     def _show_ui(self, _old: CompareUi, new: CompareUi) -> None:
-        self._side.setCurrentIndex(min(int(new.matrix), self._side.count() - 1))
-        self._below.setCurrentIndex(min(int(new.multiples), self._below.count() - 1))
+        self._side.setCurrentIndex(int(new.matrix))
+        self._title.setText("Matrix" if new.matrix else "Segments")
+        self._below.setCurrentIndex(int(new.multiples))
 
     def share_out(self) -> None:
         """Share the room out as it comes."""

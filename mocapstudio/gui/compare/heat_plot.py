@@ -195,9 +195,9 @@ class HeatPlot(TimePlot):
     def _edges(self) -> list[tuple[int, int]]:
         assert self._linked is not None
         edges = {}
-        for one in self._segments:
-            start, end = self._linked.carried(one)
-            edges[one.start], edges[one.end] = start, end
+        for one in self._linked.carried(self._segments):
+            edges[one.reference.start] = one.source.start
+            edges[one.reference.end] = one.source.end
         return [(own, other) for other, own in edges.items()]
 
     def _draw_lanes(self, p: QPainter, _area: QRectF) -> None:
@@ -208,7 +208,8 @@ class HeatPlot(TimePlot):
         spans = [(one.name, one.start, one.end) for one in shown]
         chosen = self._segment if self._draft is None else len(spans) - 1
         drawing.draw_segments(p, bands.lane, self.reference_scale, spans, chosen)
-        over = [(one.name, *self._linked.carried(one)) for one in shown]
+        answers = [one.source for one in self._linked.carried(shown)]
+        over = [(one.name, one.start, one.end) for one in answers]
         drawing.draw_segments(p, bands.carried, self.source_scale, over, chosen)
 
     # -- mouse

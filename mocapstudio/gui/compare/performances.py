@@ -13,6 +13,7 @@ from mocapstudio.gui import theme
 from mocapstudio.gui.actions import Actions
 from mocapstudio.gui.compare import colours as kinds
 from mocapstudio.gui.compare.bridge import CompareBridge
+from mocapstudio.gui.compare.naming import short_names
 from mocapstudio.gui.widgets.parts import ElidedLabel, header, label, panel
 from mocapstudio.review.comparing import Compared, ComparingState
 from mocapstudio.review.comparing_state import only_heads_differ
@@ -40,11 +41,13 @@ class RankingModel(QAbstractTableModel):
         super().__init__()
         self._bridge = bridge
         self._rows: tuple[Compared, ...] = ()
+        self._short: dict[str, str] = {}
 
     def show(self, state: ComparingState) -> None:
         """Show other sources."""
         self.beginResetModel()
         self._rows = state.ranking
+        self._short = short_names([one.id for one in state.sources])
         self.endResetModel()
 
     def source(self, row: int) -> Compared:
@@ -80,7 +83,7 @@ class RankingModel(QAbstractTableModel):
         """Say what stands in a cell."""
         one, column = self._rows[index.row()], index.column()
         if role == Qt.ItemDataRole.DisplayRole:
-            return _text(one, index.row(), column)
+            return self._short[one.id] if column == 1 else _text(one, index.row(), column)
         if role == Qt.ItemDataRole.ToolTipRole:
             return _tip(one)
         if role == Qt.ItemDataRole.TextAlignmentRole and column > 1:
@@ -96,8 +99,6 @@ class RankingModel(QAbstractTableModel):
 def _text(one: Compared, row: int, column: int) -> str:
     if column == 0:
         return str(row + 1) if one.linked is not None else ""
-    if column == 1:
-        return one.id
     if one.comparison is None:
         return ("failed" if one.failure else "…") if column == 2 else ""
     if column == 2:
@@ -114,7 +115,7 @@ def _tip(one: Compared) -> str:
     if one.failure:
         lines.append(one.failure)
     if one.comparison is not None:
-        lines += [f"Doubtful: {warning}" for warning in one.comparison.warnings]
+        lines += one.comparison.warnings
     return "\n".join(lines)
 
 
@@ -224,6 +225,7 @@ class PerformancesView(QFrame):
         doubts = () if comparison is None else comparison.warnings
         text = failure and f"Not compared: {failure}"
         if doubts:
-            text = "Doubtful: " + "; ".join(doubts)
+            text = "; ".join(doubts)
+            text = text[:1].upper() + text[1:]
         self._warnings.setText(text)
         self._warnings.setVisible(bool(text))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,9 +10,11 @@ from PySide6.QtCore import QObject
 
 from mocapstudio.comparison.labels import Labels, labels_of, read_labels, write_labels
 from mocapstudio.comparison.model import Segment
+from mocapstudio.comparison.segments import suggested
 from mocapstudio.gui import settings
 from mocapstudio.gui.dialogs.files import FileRequest, ask_for_files, ask_where_to_write
 from mocapstudio.motion.errors import MocapError
+from mocapstudio.motion.progress import Progress
 
 if TYPE_CHECKING:
     from mocapstudio.gui.main_window import MainWindow
@@ -45,6 +47,7 @@ class Segmenting(QObject):
             "segment-delete": self.delete,
             "segment-next": lambda: self.step(1),
             "segment-previous": lambda: self.step(-1),
+            "segment-suggest": self.suggest,
             "segment-load": self.ask_load,
             "segment-save": self.ask_save,
             "segment-carry": self.ask_carry,
@@ -82,6 +85,32 @@ class Segmenting(QObject):
             wanted = later if by > 0 else later - 1
         if 0 <= wanted < len(state.segments):
             self._bridge.sitting.select_segment(wanted)
+
+    def suggest(self) -> None:
+        """Suggest segments from the reference's own motion; they take the place of all others."""
+        reference = self._bridge.state.reference
+        if reference is None:
+            return
+
+        def work() -> Generator[Progress, None, tuple[Segment, ...]]:
+            yield Progress(0.0, "looking for segments")
+            return suggested(reference)
+
+        def done(segments: tuple[Segment, ...]) -> None:
+            if reference is not self._bridge.state.reference:
+                return
+            if segments:
+                self._bridge.sitting.set_segments(segments, "Suggested Segments")
+            count = len(segments)
+            self._messages.tell(f"{count} segments suggested." if count else "No segments found.")
+
+        self._window.jobs.start(
+            "Looking for segments",
+            work(),
+            done,
+            lambda error: self._messages.complain(error, "No segments could be suggested"),
+            key="segments",
+        )
 
     def ask_load(self) -> None:
         """Ask for a file of segments."""
@@ -137,10 +166,9 @@ class Segmenting(QObject):
         if source is None or linked is None:
             return
         carried, last = [], 0
-        for one in state.segments:
-            start, end = linked.carried(one)
-            start = max(start, last)
-            last = max(end, start + 1)
+        for one in (both.source for both in linked.carried(state.segments)):
+            start = max(one.start, last)
+            last = max(one.end, start + 1)
             carried.append(Segment(one.name, start, last))
         self._write(Labels(source.take.name, source.take.rate, tuple(carried)), path)
 

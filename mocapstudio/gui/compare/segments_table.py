@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, Qt
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QHeaderView, QTableView, QVBoxLayout
 
+from mocapstudio.comparison.model import Segment
+from mocapstudio.comparison.segments import CarriedSegment
 from mocapstudio.gui import theme
 from mocapstudio.gui.actions import Actions
 from mocapstudio.gui.compare import colours as kinds
 from mocapstudio.gui.compare.bridge import CompareBridge
-from mocapstudio.gui.compare.segment_facts import SegmentFacts, segment_facts
 from mocapstudio.gui.widgets.parts import Hint
 from mocapstudio.review.comparing import ComparingState
 from mocapstudio.review.comparing_state import only_heads_differ
@@ -40,12 +42,15 @@ class SegmentsModel(QAbstractTableModel):
     def __init__(self, bridge: CompareBridge) -> None:
         super().__init__()
         self._bridge = bridge
-        self._rows: tuple[SegmentFacts, ...] = ()
+        self._rows: tuple[tuple[Segment, CarriedSegment | None], ...] = ()
 
     def show(self, state: ComparingState) -> None:
         """Show other segments."""
         self.beginResetModel()
-        self._rows = segment_facts(state.reference, state.linked, state.segments)
+        found: Sequence[CarriedSegment | None] = [None] * len(state.segments)
+        if state.linked is not None:
+            found = state.linked.carried(state.segments)
+        self._rows = tuple(zip(state.segments, found, strict=True))
         self.endResetModel()
 
     def rowCount(self, _parent: Index = QModelIndex()) -> int:  # noqa: B008
@@ -83,18 +88,37 @@ class SegmentsModel(QAbstractTableModel):
 
     def data(self, index: Index, role: int = 0) -> Any:
         """Say what stands in a cell."""
-        one, column = self._rows[index.row()], index.column()
+        (segment, answer), column = self._rows[index.row()], index.column()
         if role in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.EditRole):
-            return one.texts()[column]
+            return self._text(segment, answer, column)
         if role == Qt.ItemDataRole.TextAlignmentRole and column:
             return int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
-        if role == Qt.ItemDataRole.ForegroundRole and column == 4 and one.delay is not None:
+        if role == Qt.ItemDataRole.ForegroundRole and column == 4 and answer is not None:
+            late = self._delay(answer)
             tolerance = self._bridge.state.parameters.tolerance
-            kind = 0 if abs(one.delay) <= tolerance else -1 if one.delay > 0 else 1
+            kind = 0 if abs(late) <= tolerance else -1 if late > 0 else 1
             return QColor(kinds.timing(theme.current(), kind))
         if role == Qt.ItemDataRole.ToolTipRole:
-            return one.name
+            return segment.name
         return None
+
+    def _text(self, segment: Segment, answer: CarriedSegment | None, column: int) -> str:
+        if column == 0:
+            return segment.name
+        reference = self._bridge.state.reference
+        assert reference is not None
+        if column < 3:
+            frames = segment.start if column == 1 else segment.end - segment.start
+            return f"{reference.seconds(frames):.2f}"
+        if answer is None:
+            return ""
+        if column == 3:
+            return f"{answer.source_duration:.2f}"
+        return f"{self._delay(answer):+.2f}".replace("-", "−")
+
+    def _delay(self, answer: CarriedSegment) -> float:
+        true_speed = self._bridge.state.parameters.true_speed
+        return answer.delay if true_speed else answer.delay_relative
 
 
 class SegmentsView(QFrame):

@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QToolTip, QWidget
 from mocapstudio.gui import theme
 from mocapstudio.gui.compare import colours as kinds
 from mocapstudio.gui.compare.bridge import Alignment, CompareBridge, CompareUi
+from mocapstudio.gui.compare.naming import short_names
 from mocapstudio.gui.compare.scene import Pose, as_colour
 from mocapstudio.gui.compare.skeleton_view import SkeletonView
 from mocapstudio.gui.compare.troupe import Member, Part, Troupe, figures
@@ -158,8 +159,9 @@ class StageView(QWidget):
     def _legend(self, members: Sequence[Member]) -> list[tuple[str, Colour]]:
         if len(members) < 2:
             return []
+        short = short_names([one.id for one in self._bridge.state.sources])
         return [
-            ("reference" if one.source is None else one.source.id, self._colour(one))
+            ("reference" if one.source is None else short[one.source.id], self._colour(one))
             for one in members
         ]
 
@@ -245,8 +247,7 @@ class StageView(QWidget):
             hot = as_colour(kinds.far(theme.current()).name())
         ring = None
         if state.row is not None and member.part is not Part.OTHER:
-            names = member.actor.names
-            ring = names.index(state.row) if state.row in names else None
+            ring = self._troupe.point_of(member, state.row)
         trail = None
         if ring is not None:
             rate = float(member.actor.take.rate)
@@ -291,7 +292,7 @@ class StageView(QWidget):
     def _click(self, view: SkeletonView, at: QPointF) -> None:
         found = self._point_at(view, at)
         if found is not None:
-            row = self._troupe.row_of(*found)
+            row = self._troupe.row_of(*found, self._bridge.state)
             self._bridge.sitting.select_row(None if row == self._bridge.state.row else row)
 
     def _hover(self, view: SkeletonView, at: QPointF) -> None:
@@ -305,9 +306,10 @@ class StageView(QWidget):
         member, point = found
         text = member.actor.names[point]
         comparison = None if member.source is None else member.source.comparison
-        if comparison is not None and text in comparison.rows:
+        row = self._troupe.row_of(member, point, self._bridge.state)
+        if comparison is not None and row is not None:
             at_frame = min(member.frame(self._bridge.state), len(comparison.joint_difference) - 1)
-            value = comparison.joint_difference[at_frame, comparison.rows.index(text)]
+            value = comparison.joint_difference[at_frame, comparison.rows.index(row)]
             text += f" · {value:.3f} apart (box units)"
         view.canvas.setCursor(Qt.CursorShape.PointingHandCursor)
         QToolTip.showText(view.canvas.mapToGlobal(at.toPoint()), text, view.canvas)

@@ -19,6 +19,8 @@ from mocapstudio.gui.viewport.palette import Colour
 from mocapstudio.gui.viewport.solids import COARSE, FINE, Detail
 from mocapstudio.review.comparing import Compared, ComparingState, Recording
 
+Indices = NDArray[np.int64]
+
 _LEAST_SCALE = 0.04
 
 
@@ -64,9 +66,9 @@ class Troupe:
     def __init__(self) -> None:
         self._actors: dict[Recording, Actor] = {}
         self._figures: dict[tuple[Recording, Detail], Figure] = {}
-        self._common: dict[tuple[int, int], tuple[NDArray[np.int64], NDArray[np.int64]]] = {}
-        self._here: dict[tuple[int, int, int], Placing] = {}
-        self._scales: dict[int, tuple[Comparison, float, NDArray[np.int64]]] = {}
+        self._common: dict[Comparison, tuple[Indices, Indices]] = {}
+        self._here: dict[tuple[Comparison, int], Placing] = {}
+        self._scales: dict[Comparison, tuple[float, Indices]] = {}
 
     def actor(self, take: Recording) -> Actor:
         """Return the actor of a performance, the same one for the same take."""
@@ -99,7 +101,10 @@ class Troupe:
         if set(self._actors) - takes:
             self._actors = {take: one for take, one in self._actors.items() if take in takes}
             self._figures = {key: one for key, one in self._figures.items() if key[0] in takes}
-            self._common, self._here, self._scales = {}, {}, {}
+        kept = {one.comparison for one in state.sources}
+        self._common = {one: both for one, both in self._common.items() if one in kept}
+        self._scales = {one: scale for one, scale in self._scales.items() if one in kept}
+        self._here = {key: one for key, one in self._here.items() if key[0] in kept}
 
     def place(self, member: Member, state: ComparingState, ui: CompareUi) -> Placing:
         """Return where a member stands beside the reference."""
@@ -110,7 +115,7 @@ class Troupe:
             return placing.IN_PLACE
         if ui.alignment is Alignment.THROUGHOUT:
             return self._fit(member, reference, state.frame, member.frame(state))
-        key = (id(source.linked), id(reference), ui.anchor)
+        key = (source.linked.comparison, ui.anchor)
         if key not in self._here:
             at = source.linked.source_of(ui.anchor)
             self._here[key] = self._fit(member, reference, ui.anchor, at)
@@ -133,7 +138,7 @@ class Troupe:
         comparison = None if member.source is None else member.source.comparison
         if hot is None or comparison is None:
             return plain
-        _, scale, rows = self._scale(member, comparison)
+        scale, rows = self._scale(member, comparison)
         at = min(member.frame(state), len(comparison.joint_difference) - 1)
         values = np.nan_to_num(comparison.joint_difference[at]) / scale
         share = np.zeros(len(member.actor.names))
@@ -145,47 +150,65 @@ class Troupe:
         rounded: NDArray[np.uint8] = np.round(mixed).astype(np.uint8)
         return rounded
 
-    def row_of(self, member: Member, point: int) -> str | None:
+    def row_of(self, member: Member, point: int, state: ComparingState) -> str | None:
         """Name of the compared row that a point stands for, or None."""
-        comparison = None if member.source is None else member.source.comparison
-        name = member.actor.names[point] if point < len(member.actor.names) else None
-        return name if comparison is None or name in comparison.rows else None
+        comparison = state.comparison if member.source is None else member.source.comparison
+        if point >= len(member.actor.names) or comparison is None:
+            return None
+        name = member.actor.names[point]
+        names = comparison.rows if member.source is None else _own_rows(comparison)
+        return comparison.rows[names.index(name)] if name in names else None
 
-    def _scale(
-        self, member: Member, comparison: Comparison
-    ) -> tuple[Comparison, float, NDArray[np.int64]]:
-        key = id(comparison)
-        if key not in self._scales:
+    def point_of(self, member: Member, row: str | None) -> int | None:
+        """Return the point that stands for a compared row, or None."""
+        comparison = None if member.source is None else member.source.comparison
+        if comparison is not None and row in comparison.rows:
+            row = _own_rows(comparison)[comparison.rows.index(row)]
+        return member.actor.names.index(row) if row in member.actor.names else None
+
+    def _scale(self, member: Member, comparison: Comparison) -> tuple[float, Indices]:
+        """Difference that is coloured most, and the point of each row."""
+        if comparison not in self._scales:
             known = comparison.joint_difference[np.isfinite(comparison.joint_difference)]
             high = float(np.percentile(known, 98)) if known.size else 0.0
             index = {name: i for i, name in enumerate(member.actor.names)}
-            rows = np.array([index.get(row, -1) for row in comparison.rows], dtype=np.int64)
-            self._scales[key] = comparison, max(high, _LEAST_SCALE), rows
-        return self._scales[key]
+            rows = np.array([index.get(row, -1) for row in _own_rows(comparison)], dtype=np.int64)
+            self._scales[comparison] = max(high, _LEAST_SCALE), rows
+        return self._scales[comparison]
 
     def _fit(self, member: Member, reference: Recording, frame: int, own: int) -> Placing:
         actor, other = member.actor, self.actor(reference)
-        mine, theirs = self._shared(actor, other)
+        mine, theirs = self._shared(member, other)
         rise = other.level - actor.level
         own, frame = min(own, actor.frames - 1), min(frame, other.frames - 1)
         if len(mine) < 2:
             return placing.fit(actor.followed[own][None], other.followed[frame][None], rise)
         return placing.fit(actor.points(own)[mine], other.points(frame)[theirs], rise)
 
-    def _shared(self, one: Actor, other: Actor) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        key = (id(one), id(other))
-        if key not in self._common:
+    def _shared(self, member: Member, other: Actor) -> tuple[Indices, Indices]:
+        """Points of a member and of the reference that stand for the same part of the body."""
+        assert member.source is not None
+        comparison = member.source.comparison
+        assert comparison is not None
+        if comparison not in self._common:
+            own = {name: i for i, name in enumerate(member.actor.names)}
             index = {name: i for i, name in enumerate(other.names)}
-            pairs = [(i, index[name]) for i, name in enumerate(one.names) if name in index]
+            named = zip(_own_rows(comparison), comparison.rows, strict=True)
+            pairs = [(own[a], index[b]) for a, b in named if a in own and b in index]
             both = np.array(pairs, dtype=np.int64).reshape(-1, 2)
-            self._common[key] = both[:, 0], both[:, 1]
-        return self._common[key]
+            self._common[comparison] = both[:, 0], both[:, 1]
+        return self._common[comparison]
 
     def _figure(self, take: Recording, detail: Detail) -> Figure:
         key = (take, detail)
         if key not in self._figures:
             self._figures[key] = self.actor(take).figure(detail)
         return self._figures[key]
+
+
+def _own_rows(comparison: Comparison) -> tuple[str, ...]:
+    """Names of the rows in the source."""
+    return comparison.source_rows or comparison.rows
 
 
 def figures(members: Sequence[Member]) -> list[Figure]:

@@ -46,6 +46,7 @@ class Layer(QGraphicsItem):
         super().__init__()
         self._draw = draw
         self._cached = cached
+        self._direct = False
         self._area = QRectF()
         self._picture: QPixmap | None = None
         self.setAcceptedMouseButtons(Qt.MouseButton.NoButton)
@@ -62,6 +63,10 @@ class Layer(QGraphicsItem):
         self._picture = None
         self.update()
 
+    def draw_directly(self, on: bool) -> None:
+        """Draw without a kept picture for a while, as for a device of another resolution."""
+        self._direct = on
+
     def boundingRect(self) -> QRectF:
         """The plot's area."""
         return self._area
@@ -70,7 +75,7 @@ class Layer(QGraphicsItem):
         """Draw, or copy what was drawn."""
         if self._area.isEmpty():
             return
-        if not self._cached:
+        if not self._cached or self._direct:
             painter.setClipRect(self._area)
             self._draw(painter, self._area)
             return

@@ -146,6 +146,11 @@ class TimePlot(pg.PlotWidget):  # type: ignore[misc]
         for layer in self._layers:
             layer.refresh()
 
+    def draw_directly(self, on: bool) -> None:
+        """Draw without kept pictures for a while, as for a device of another resolution."""
+        for layer in self._layers:
+            layer.draw_directly(on)
+
     def set_frame(self, frame: int) -> None:
         """Move the play head."""
         if frame != self._frame:
