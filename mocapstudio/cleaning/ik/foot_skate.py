@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from mocapstudio.cleaning.contacts.model import Contact, ContactPoint
 from mocapstudio.cleaning.ik import windows
+from mocapstudio.cleaning.ik.agreement import agreed
 from mocapstudio.cleaning.ik.apply import Departure, declared_changes, with_departures
 from mocapstudio.cleaning.ik.ranges import JointRanges, joint_ranges
 from mocapstudio.cleaning.ik.slide import Slide, places, slide
@@ -129,7 +130,7 @@ def clean(
     """
     parameters = parameters or SkateParameters()
     yield Progress(0.0, "laying out contacts")
-    laid = list(holds(take, contacts, points, others or {}))
+    laid = list(agreed(take, holds(take, contacts, points, others or {})))
     ranges = ranges or joint_ranges([take])
     departures: list[Departure] = []
     cut = windows.cut(take, laid, parameters.easing)
@@ -177,7 +178,7 @@ def _solve_window(
 
 def _unreached(cleaned: Take, laid: Sequence[Hold]) -> Iterable[Unreached]:
     for hold, place in zip(laid, places(cleaned, laid), strict=True):
-        gap = hold.gap(place)
+        gap = hold.unmet(place)
         if gap.max() > _MET:
             yield Unreached(hold.contact.id, 1e3 * float(gap.max()), int(np.sum(gap > _MET)))
 

@@ -74,12 +74,12 @@ def keep_ends(before: Take, after: Take, ranges: JointRanges | None = None) -> K
     ranges = ranges or joint_ranges([before])
     ends = _ends_outside(before, after)
     was, moved = take_pose(before), take_pose(after)
-    departures = []
+    departures: list[Departure] = []
     for joint in ends:
         away = np.linalg.norm(moved[0][:, joint] - was[0][:, joint], axis=1)
         away += rot.angle(moved[1][:, joint], was[1][:, joint])
-        for span in _runs(away > _MOVED):
-            departures.append(_bring_back(after, was, joint, span, ranges))
+        runs = _runs(away > _MOVED)
+        departures += [_bring_back(after, was, joint, span, ranges) for span in runs]
     kept = with_departures(after, departures)
     now = take_pose(kept)[0]
     gaps = {
@@ -93,12 +93,9 @@ def _ends_outside(before: Take, after: Take) -> list[int]:
     """Wrists and ankles of limbs in which nothing changed."""
     changed = np.flatnonzero((before.rotations != after.rotations).any(axis=(0, 2)))
     parts = topology(before.skeleton)
-    found = []
-    for kind in ("leg", "arm"):
-        for end in extremities(before.skeleton, kind):
-            if not set(parts.limb_of(end.joint).joints) & set(changed.tolist()):
-                found.append(end.joint)
-    return found
+    touched = set(changed.tolist())
+    ends = [*extremities(before.skeleton, "leg"), *extremities(before.skeleton, "arm")]
+    return [e.joint for e in ends if not touched & set(parts.limb_of(e.joint).joints)]
 
 
 def _runs(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:

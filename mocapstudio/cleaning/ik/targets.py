@@ -12,7 +12,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapstudio.cleaning.contacts.model import Contact, ContactPoint, Fixed, Floor, Line
+from mocapstudio.cleaning.contacts.model import (
+    Contact,
+    ContactPoint,
+    Fixed,
+    Floor,
+    Line,
+    Point,
+)
 from mocapstudio.cleaning.ik.objectives.position import across
 from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.errors import MocapError
@@ -23,9 +30,6 @@ Array = NDArray[np.float64]
 
 _SLOW = 0.05
 """Metres a second: frames in which the point is faster count less for where it stood."""
-_ALONG = 0.02
-_APART = 0.005
-"""Metres: points of one foot nearer than this are one point."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +76,14 @@ class Hold:
             away = away @ self.projection.T
         return np.asarray(np.linalg.norm(away, axis=1))
 
+    def unmet(self, place: Array) -> Array:
+        """(m,) metres by which a point that is at `place` (m, 3) fails what the contact asks for.
+
+        A floor asks that the point stands still on it, wherever; everything else asks for its
+        target.
+        """
+        return chosen_again(self, place).gap(place)
+
 
 def holds(
     take: Take,
@@ -100,15 +112,14 @@ def holds(
     """
     pose = take_pose(take)
     offsets = {point.key: np.asarray(point.offset, dtype=float) for point in points}
-    laid = [_hold(take, pose, contact, offsets, others) for contact in contacts]
-    return _freed_along(take, laid)
+    return tuple(_hold(take, pose, contact, offsets, others) for contact in contacts)
 
 
 def _hold(
     take: Take,
     pose: tuple[Array, Array],
     contact: Contact,
-    offsets: Mapping[tuple[str, str | None], Array],
+    offsets: Mapping[tuple[str, Point | None], Array],
     others: Mapping[str, Take],
 ) -> Hold:
     who = f"contact {contact.id}"
@@ -140,9 +151,8 @@ def _target(
         direction = _unit(contact, target.direction)
         return np.broadcast_to(np.array(target.position), place.shape), across(direction)
     if isinstance(target, Floor):
-        normal = _unit(contact, target.normal)
-        stand = standing_place(place, float(take.rate))
-        return np.broadcast_to(_on_plane(stand, normal, target.height), place.shape), np.eye(3)
+        stand = on_floor(contact, standing_place(place, float(take.rate)))
+        return np.broadcast_to(stand, place.shape), np.eye(3)
     other = others.get(target.performer)
     if other is None:
         raise MocapError(f"contact {contact.id}: no performer {target.performer}")
@@ -171,52 +181,18 @@ def standing_place(place: Array, rate: float) -> Array:
     return np.asarray(weight @ place / weight.sum())
 
 
-def _on_plane(place: Array, normal: Array, height: float) -> Array:
-    """Project along the vertical's share of the normal: `height` is that of the place itself."""
-    if abs(normal[1]) < 1e-6:
-        return place
-    return np.asarray(place + normal * (height - place[1]) * normal[1])
+def on_floor(contact: Contact, place: Array) -> Array:
+    """(3,) metres: `place` brought to the floor of a contact, straight along its normal."""
+    floor = contact.target
+    assert isinstance(floor, Floor)
+    normal = _unit(contact, floor.normal)
+    # The floor's height is that at the place itself, so that only its vertical share counts.
+    return np.asarray(place + normal * (floor.height - place[1]) * normal[1])
 
 
 def chosen_again(hold: Hold, place: Array) -> Hold:
     """Move a floor's target to where its point (m, 3) could be brought; others stay."""
     if not isinstance(hold.contact.target, Floor):
         return hold
-    floor = hold.contact.target
-    stand = _on_plane(place.mean(axis=0), _unit(hold.contact, floor.normal), floor.height)
+    stand = on_floor(hold.contact, place.mean(axis=0))
     return replace(hold, target=np.broadcast_to(stand, place.shape))
-
-
-def _freed_along(take: Take, laid: Sequence[Hold]) -> tuple[Hold, ...]:
-    """Free the distance between two points of one foot where both stand on a floor.
-
-    The foot is rigid: heel and ball cannot stand where each of them would on its own, and to hold
-    both in every direction would twist the foot for a millimetre. The shorter contact is not held
-    along the line to the longer one; the bones see to that.
-    """
-    ranked = sorted(laid, key=lambda h: (isinstance(h.contact.target, Floor), -len(h.frames)))
-    free = {}
-    for rank, hold in enumerate(ranked):
-        if not isinstance(hold.contact.target, Floor):
-            continue
-        held = np.broadcast_to(np.eye(3), (len(hold.frames), 3, 3)).copy()
-        open_frames = np.ones(len(held), dtype=bool)
-        for other in ranked[:rank]:
-            both = _together(take, hold, other) & open_frames
-            way = other.target[0] - hold.target[0]
-            length = float(np.linalg.norm(way))
-            if both.any() and length > _APART:
-                held[both] -= (1.0 - _ALONG) * np.outer(way, way) / length**2
-                open_frames &= ~both
-        free[id(hold)] = held
-    return tuple(replace(h, projection=free.get(id(h), h.projection)) for h in laid)
-
-
-def _together(take: Take, hold: Hold, other: Hold) -> NDArray[np.bool_]:
-    """(m,) frames of `hold` in which `other`, a point of the same foot, is in contact too."""
-    up = take.skeleton.parents
-    near = (
-        hold.joint == other.joint or other.joint == up[hold.joint] or hold.joint == up[other.joint]
-    )
-    within = (hold.frames >= other.contact.start) & (hold.frames < other.contact.end)
-    return within & near

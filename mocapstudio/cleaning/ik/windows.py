@@ -114,11 +114,11 @@ def smooth(
     low, high = take.span
     length = max(1.0, easing * float(take.rate) / _FADES)
     weights = levers(take.skeleton, free) * (_SMOOTHNESS * length**_ORDER)
-    joins = {"joins_before": start not in (0, low), "joins_after": end not in (take.frames, high)}
+    joins = start not in (0, low), end not in (take.frames, high)
     wishes: list[TimeObjective] = [KeepPose(end - start, free.stiffness)]
     for columns, eased in _contact_frames(take, free, span, holds):
         mine = np.where(columns, weights, 0.0)
-        wishes.append(Smoothness(end - start, mine, _ORDER, eased=eased, **joins))
+        wishes.append(Smoothness(end - start, mine, _ORDER, *joins, eased))
     return tuple(wishes)
 
 

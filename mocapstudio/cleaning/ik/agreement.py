@@ -1,0 +1,147 @@
+"""Contacts of one foot that stand on a floor together, made to agree.
+
+Each would stand best where its own point was on average; but bones hold heel, ball and toe
+together. Places are chosen for all of them at once, so that the foot keeps its own direction, and
+what the bones decide anyway is not asked for twice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapstudio.cleaning.contacts.model import Floor
+from mocapstudio.cleaning.ik.targets import Hold, on_floor
+from mocapstudio.motion.take import Take
+
+Array = NDArray[np.float64]
+
+_TOGETHER = 100.0
+"""A frame in which two points stand together counts this much for the way between them, against 1
+for where each of them was."""
+_ALONG = 0.02
+"""Share of a hold that remains along the line to a point that stands longer."""
+_APART = 0.005
+"""Metres: points of one foot nearer than this are one point."""
+_TURNED = np.cos(np.deg2rad(35.0))
+
+
+@dataclass(frozen=True, eq=False)
+class _Pair:
+    """Two holds of one foot that overlap in time; `first` stands longer.
+
+    Attributes
+    ----------
+    first, second
+        Their places in the list.
+    frames
+        (k,) frames of the take in which both stand.
+    ways
+        (k, 3) metres from the second point to the first.
+    """
+
+    first: int
+    second: int
+    frames: NDArray[np.int64]
+    ways: Array
+
+
+def agreed(take: Take, laid: Sequence[Hold]) -> tuple[Hold, ...]:
+    """Choose where floors are stood on for all contacts together.
+
+    The shorter of two contacts is not held along the line to the longer one: to hold both in every
+    direction would twist the foot for a millimetre. While the foot turns on the longer one, as
+    dancers do, the shorter cannot stand at all and is let go.
+
+    Parameters
+    ----------
+    take
+        F frames.
+    laid
+        As `targets.holds` returns them.
+    """
+    pairs = [
+        pair for a, b in combinations(range(len(laid)), 2) if (pair := _pair(take, laid, a, b))
+    ]
+    # The longest contact has the first say.
+    pairs.sort(key=lambda pair: -len(laid[pair.first].frames))
+    turning = [_turns(pair) for pair in pairs]
+    placed = _placed(laid, [p for p, turns in zip(pairs, turning, strict=True) if not turns])
+    free = {
+        i: np.broadcast_to(np.eye(3), (len(hold.frames), 3, 3)).copy()
+        for i, hold in enumerate(placed)
+        if isinstance(hold.contact.target, Floor)
+    }
+    waiting = {i: np.ones(len(held), dtype=bool) for i, held in free.items()}
+    for pair, turns in zip(pairs, turning, strict=True):
+        at = pair.frames - placed[pair.second].contact.start
+        at = at[waiting[pair.second][at]]
+        way = placed[pair.first].target[0] - placed[pair.second].target[0]
+        line = np.outer(way, way) / max(float(way @ way), _APART**2)
+        free[pair.second][at] = 0.0 if turns else np.eye(3) - (1.0 - _ALONG) * line
+        waiting[pair.second][at] = False
+    return tuple(replace(h, projection=free.get(i, h.projection)) for i, h in enumerate(placed))
+
+
+def _pair(take: Take, laid: Sequence[Hold], a: int, b: int) -> _Pair | None:
+    if _rank(laid[b]) > _rank(laid[a]):
+        a, b = b, a
+    first, second = laid[a], laid[b]
+    up = take.skeleton.parents
+    near = first.joint in (second.joint, up[second.joint]) or up[first.joint] == second.joint
+    start = max(first.contact.start, second.contact.start)
+    frames = np.arange(start, min(first.contact.end, second.contact.end))
+    if not near or len(frames) == 0 or not isinstance(second.contact.target, Floor):
+        return None
+    ways = first.place[frames - first.contact.start] - second.place[frames - second.contact.start]
+    return _Pair(a, b, frames, ways) if np.linalg.norm(ways, axis=1).min() > _APART else None
+
+
+def _rank(hold: Hold) -> tuple[bool, int]:
+    """What was placed by hand stands before what stands anywhere on a floor, then the longer."""
+    return not isinstance(hold.contact.target, Floor), len(hold.frames)
+
+
+def _turns(pair: _Pair) -> bool:
+    """Tell whether the foot turns on the floor while both points touch it."""
+    flat = pair.ways[:, [0, 2]]
+    lengths = np.linalg.norm(flat, axis=1)
+    clear = lengths > _APART
+    if clear.sum() < 2:
+        return False
+    directions = flat[clear] / lengths[clear, None]
+    usual = directions.mean(axis=0)
+    usual /= max(float(np.linalg.norm(usual)), 1e-9)
+    return bool((directions @ usual).min() < _TURNED)
+
+
+def _placed(laid: Sequence[Hold], pairs: Sequence[_Pair]) -> list[Hold]:
+    """Least squares: each near where it was, both of a pair as far apart as they were."""
+    if not laid:
+        return []
+    weights = np.array([float(len(h.frames)) for h in laid])
+    system = np.diag(weights)
+    right = weights[:, None] * np.array([h.target[0] for h in laid])
+    for pair in pairs:
+        strength = _TOGETHER * len(pair.frames)
+        apart = strength * pair.ways.mean(axis=0)
+        a, b = pair.first, pair.second
+        system[[a, b], [a, b]] += strength
+        system[[a, b], [b, a]] -= strength
+        right[a] += apart
+        right[b] -= apart
+    chosen = [isinstance(hold.contact.target, Floor) for hold in laid]
+    for i, hold in enumerate(laid):
+        if not chosen[i]:
+            # What a person placed is no matter of choice.
+            system[i] = 0.0
+            system[i, i], right[i] = 1.0, hold.target[0]
+    spots = np.linalg.solve(system, right)
+    return [
+        replace(h, target=np.broadcast_to(on_floor(h.contact, spot), h.place.shape)) if free else h
+        for h, spot, free in zip(laid, spots, chosen, strict=True)
+    ]
