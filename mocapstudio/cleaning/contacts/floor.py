@@ -53,7 +53,7 @@ class Rest:
 
 
 @dataclass(frozen=True, eq=False)
-class Floor:
+class FittedFloor:
     """The fitted floor.
 
     Attributes
@@ -82,10 +82,14 @@ class Floor:
         up = np.array([-self.slope[0], 1.0, -self.slope[1]])
         return up / float(np.linalg.norm(up))
 
+    def at(self, places: Array) -> Array:
+        """Metres above the world's zero: the plane at places (…, 3); levels and steps left out."""
+        return np.asarray(self.height + places[..., [0, 2]] @ self.slope)
+
 
 def fit_floor(
     positions: Array, rate: float, leg: float, hips: Array, limbs: Sequence[int]
-) -> Floor:
+) -> FittedFloor:
     """Fit the floor to the rests of the points of feet.
 
     Parameters
@@ -103,13 +107,15 @@ def fit_floor(
 
     Returns
     -------
-    Floor
+    FittedFloor
         Without any rest it lies level below the lowest places of each point.
     """
     found = _rests(positions, rate, leg)
     if not found:
         levels = np.percentile(positions[..., 1], 2, axis=0)
-        return Floor(0.0, np.zeros(2), levels, (), np.broadcast_to(levels, positions.shape[:2]))
+        return FittedFloor(
+            0.0, np.zeros(2), levels, (), np.broadcast_to(levels, positions.shape[:2])
+        )
     height, slope, levels = _plane(found, positions.shape[1], rate, leg)
     plane = height + positions[..., [0, 2]] @ slope + levels
     rising = np.array([r.place[1] - height - _across(r) @ slope - levels[r.point] for r in found])
@@ -120,7 +126,7 @@ def fit_floor(
         if abs(above) < _NEAR * leg or carries
     ]
     under = plane + _followed(kept, positions.shape[:2])
-    return Floor(height, slope, levels, tuple(rest for rest, _ in kept), under)
+    return FittedFloor(height, slope, levels, tuple(rest for rest, _ in kept), under)
 
 
 def _rests(positions: Array, rate: float, leg: float) -> list[Rest]:

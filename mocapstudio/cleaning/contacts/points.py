@@ -187,15 +187,17 @@ def _in_toes(direction: Array, sole: _Sole, foot: Extremity, pose: Pose) -> Arra
 
 def _standing(take: Take, foot: Extremity, to_ball: Array, pose: Pose) -> NDArray[np.int64]:
     """Frames in which the foot is flat on the floor: slow, and the ankle low."""
-    ankle = pose[0][:, foot.joint]
-    ball = ankle + rot.rotate(pose[1][:, foot.joint], to_ball)
-    if take.frames < 3:
-        return np.arange(take.frames)
+    low, high = take.span
+    ankle = pose[0][low:high, foot.joint]
+    ball = ankle + rot.rotate(pose[1][low:high, foot.joint], to_ball)
+    frames = high - low
+    if frames < 3:
+        return np.arange(low, high)
     speed = sum(np.linalg.norm(np.gradient(p, axis=0), axis=1) for p in (ankle, ball))
     against = speed * float(take.rate) / (_SLOW * foot.length)
     against += (ankle[:, 1] - np.percentile(ankle[:, 1], 2)) / (_LOW * foot.length)
-    count = max(min(_FEWEST, take.frames), int(_STANDING * take.frames))
-    return np.asarray(np.argsort(against, kind="stable")[:count], dtype=np.int64)
+    count = max(min(_FEWEST, frames), int(_STANDING * frames))
+    return np.asarray(low + np.argsort(against, kind="stable")[:count], dtype=np.int64)
 
 
 def _mean_up(world: Array) -> Array:

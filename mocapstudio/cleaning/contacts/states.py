@@ -72,11 +72,12 @@ class Emissions:
 
 _USUAL = Emissions(-4.0, 1.0, 0.45, 0.95, 0.010, 0.036)
 _USUAL_HEEL = Emissions(-4.0, 0.6, 0.25, 0.8, 0.0045, 0.017)
+_USUAL_PALM = Emissions(-4.0, 1.0, 0.45, 0.95, 0.03, 0.5)
 
 
 def usual(point: str | None) -> Emissions:
-    """What is usual for heels, and for all other points."""
-    return _USUAL_HEEL if point == "heel" else _USUAL
+    """What is usual for heels, for palms (whose thickness nobody knows), and for other points."""
+    return {"heel": _USUAL_HEEL, "palm": _USUAL_PALM}.get(point or "", _USUAL)
 
 
 def log_speed(speed: Array) -> Array:
