@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from mocapstudio.formats.options import Up
 from mocapstudio.formats.reading import Reading
 from mocapstudio.formats.report import Problem
+from mocapstudio.formats.table_columns import Columns
 from mocapstudio.formats.table_decimal import with_decimal
 from mocapstudio.formats.table_keys import Keys, read_keys
 from mocapstudio.formats.table_labels import unique_labels
-from mocapstudio.formats.table_motion import Columns, Stated
+from mocapstudio.formats.table_model import Head, Stated
 from mocapstudio.formats.table_names import (
     POSITION,
     Leading,
@@ -31,28 +31,6 @@ _AXIS = re.compile(r"[tdp]?([xyz])\d*", re.IGNORECASE)
 _LOOKED_AT = 60
 _FEWEST_CELLS = 3
 _DELIMITERS = (b"\t", b";", b",", None)
-
-
-@dataclass(frozen=True)
-class Head:
-    """What stands above the rows.
-
-    Attributes
-    ----------
-    columns
-        Where the markers are in a row.
-    stated
-        What is said of rate, unit and number of frames.
-    first
-        0-based line of the first row.
-    sheet
-        The lines, split as the rows are.
-    """
-
-    columns: Columns
-    stated: Stated
-    first: int
-    sheet: Sheet
 
 
 def first_row(sheet: Sheet) -> tuple[Sheet, int] | None:

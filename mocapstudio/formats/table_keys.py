@@ -22,6 +22,7 @@ _FRAMES = ("noofframes", "numframes", "nframes", "frames", "totalexportedframes"
 _UNITS = ("units", "unit", "lengthunits", "lengthunit")
 _NAMES = ("markernames",)
 _INCLUDED = "dataincluded"
+_NEXUS = ("trajectories", "modeloutputs", "joints")
 _PLACES = frozenset({"3d", "6d"})
 
 
@@ -73,7 +74,7 @@ def read_keys(reading: Reading, sheet: Sheet, end: int) -> Keys:
             if included and not _PLACES & {word.lower() for word in included}:
                 cause = f"no positions: it holds {', '.join(included)[:60]}"
                 raise reading.error(int(sheet.starts[i]), cause)
-        elif keyword == "trajectories" and i + 1 < end:
+        elif keyword in _NEXUS and i + 1 < end:
             # Nexus writes the rate alone on the line below.
             _take(reading, keys, i + 1, "rate", sheet.words(i + 1)[0], sheet.spans(i + 1)[0])
     return keys

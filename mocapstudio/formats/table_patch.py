@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapstudio.formats.table_layout import off_origin
-from mocapstudio.formats.table_motion import TableRecord, as_read
+from mocapstudio.formats.table_model import TableRecord
+from mocapstudio.formats.table_motion import as_read
 from mocapstudio.formats.table_sheet import Sheet
 from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.declared import Declared

@@ -57,8 +57,7 @@ def _read(
     path: Path, data: bytes, options: ReadOptions, form: str
 ) -> tuple[list[MarkerTake], ImportReport]:
     reading = Reading(path, data, options.lenient, [])
-    head = read_head(reading, open_sheet(reading))
-    take = marker_take(reading, head.sheet, head.first, head.columns, head.stated, options, form)
+    take = marker_take(reading, read_head(reading, open_sheet(reading)), options, form)
     problems = sorted(reading.problems, key=lambda p: (p.guess, p.line or 0))
     return [take], ImportReport(path, form, tuple(dict.fromkeys(problems)))
 

@@ -13,12 +13,14 @@ from mocapstudio.formats.asf_text import is_nan
 from mocapstudio.formats.bvh_rows import LARGEST
 from mocapstudio.formats.reading import Reading
 from mocapstudio.formats.report import Problem
+from mocapstudio.formats.table_columns import Columns
 from mocapstudio.formats.table_sheet import Sheet, plain, split_cells
 from mocapstudio.motion.errors import FileError
 
 Array = NDArray[np.float64]
 
 _NUMERIC = b"0123456789+-.eE \t,;\r\n\f\v"
+_LATEST = 1e20
 _ABSENT = frozenset({b"-", b"--", b"na", b"n/a", b"null", b"none", b"#n/a"})
 
 
@@ -42,7 +44,7 @@ class Rows:
 
 
 def parse_rows(
-    reading: Reading, sheet: Sheet, first: int, columns: tuple[int, ...], width: int, strict: bool
+    reading: Reading, sheet: Sheet, first: int, columns: Columns, *, strict: bool
 ) -> Rows:
     """Read the rows from line `first` on.
 
@@ -56,10 +58,8 @@ def parse_rows(
         0-based line of the first row.
     columns
         Which cells are wanted.
-    width
-        How many cells a whole row has.
     strict
-        Whether a cell beyond `width` is an error.
+        Whether a cell beyond the last column is an error.
 
     Raises
     ------
@@ -67,17 +67,15 @@ def parse_rows(
         At a cell that is no number, at a last row that is cut off (unless lenient), and where
         there is no row.
     """
-    return _Rows(reading, sheet, columns, width, strict).parse(first)
+    return _Rows(reading, sheet, columns, strict).parse(first)
 
 
 class _Rows:
-    def __init__(
-        self, reading: Reading, sheet: Sheet, columns: tuple[int, ...], width: int, strict: bool
-    ) -> None:
-        self.reading, self.sheet, self.columns = reading, sheet, columns
-        self.width, self.strict = width, strict
-        self.pick = itemgetter(*columns)
-        self.needed = max(columns) + 1
+    def __init__(self, reading: Reading, sheet: Sheet, columns: Columns, strict: bool) -> None:
+        self.reading, self.sheet, self.strict = reading, sheet, strict
+        self.columns, self.width, self.clock = columns.wanted, columns.width, columns.time
+        self.pick = itemgetter(*self.columns)
+        self.needed = max(self.columns) + 1
         # An array of doubles: a list of floats would weigh four times as much.
         self.values, self.lines = array("d"), array("q")
         self.short: list[int] = []
@@ -106,7 +104,9 @@ class _Rows:
         self.tell()
         values = np.array(self.values).reshape(len(self.lines), len(self.columns))
         lines = np.array(self.lines, dtype=np.int64)
-        large = np.abs(values) > LARGEST
+        # Times since 1970 in microseconds or nanoseconds are large and meant.
+        limits = np.where(np.array(self.columns) == self.clock, _LATEST, LARGEST)
+        large = np.abs(values) > limits
         if large.any():
             i = int(lines[np.flatnonzero(large.any(axis=1))[0]])
             raise self.fail(i, "a value is too large for a position or a time")

@@ -19,7 +19,7 @@ _WIDEST = 2.5
 _MOST_ROWS = 4
 # How far a usual rate may be from the mean step.
 _NEAR = 0.02
-_FASTEST, _SLOWEST = 1e-5, 1000.0
+_FASTEST, _SLOWEST = 1e-5, 0.6
 
 
 @dataclass(frozen=True)

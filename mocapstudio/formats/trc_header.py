@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 
 from mocapstudio.formats.options import parse_rate
 from mocapstudio.formats.reading import Reading
 from mocapstudio.formats.report import Problem
+from mocapstudio.formats.table_columns import Columns
 from mocapstudio.formats.table_labels import unique_labels
-from mocapstudio.formats.table_motion import Columns, Stated
+from mocapstudio.formats.table_model import Head, Stated
 from mocapstudio.formats.table_sheet import Sheet, Span
 from mocapstudio.formats.units import unit_of
 from mocapstudio.motion.errors import ParameterError
@@ -20,28 +20,6 @@ _LABELS = re.compile(rb'\s*"?frame\s*#?"?[\s,;]', re.IGNORECASE)
 _AXIS = re.compile(r"[xyz]\d*", re.IGNORECASE)
 _LOOKED_AT = 40
 _LEADING = 2
-
-
-@dataclass(frozen=True)
-class Head:
-    """What stands above the rows.
-
-    Attributes
-    ----------
-    columns
-        Where the markers are in a row.
-    stated
-        What is said of rate, unit and number of frames.
-    first
-        0-based line of the first row.
-    sheet
-        The lines, split as the rows are.
-    """
-
-    columns: Columns
-    stated: Stated
-    first: int
-    sheet: Sheet
 
 
 def read_head(reading: Reading, sheet: Sheet) -> Head:

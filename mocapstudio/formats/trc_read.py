@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 from mocapstudio.formats.options import ReadOptions
@@ -35,6 +36,6 @@ def read_trc(
     reading = Reading(path, data, options.lenient, [])
     head = read_head(reading, open_sheet(reading))
     sheet = with_decimal(reading, head.sheet, head.first)
-    take = marker_take(reading, sheet, head.first, head.columns, head.stated, options, "trc")
+    take = marker_take(reading, replace(head, sheet=sheet), options, "trc")
     problems = sorted(reading.problems, key=lambda p: (p.guess, p.line or 0))
     return [take], ImportReport(path, "trc", tuple(dict.fromkeys(problems)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from fractions import Fraction
 from pathlib import Path
 
@@ -143,6 +144,31 @@ LAYOUTS = {
         f"Frame,Time (Seconds),{XYZ}",
         *numbers(","),
     ],
+    "Nexus without units": [
+        "Model Outputs",
+        "100",
+        ",," + ",".join(f"{label},," for label in LABELS),
+        f"Frame,Sub Frame,{XYZ}",
+        *(line.replace(",", ",0,", 1) for line in numbers(",", rate=None)),
+        *("", "Devices", "1000", "Frame,Sub Frame,Fx,Fy,Fz", "1,0,3,4,5"),
+    ],
+    "Qualisys with timecode": [
+        *QUALISYS,
+        "Frame\tTime\tSMPTE\t" + "\t".join(f"{label} {axis}" for label in LABELS for axis in AXES),
+        *(re.sub(r"^(\d+\t\S+)", rf"\1\t10:44:47:{i:02d}", line)
+          for i, line in enumerate(numbers("\t"))),
+    ],
+    "rows of names": [
+        "scorer" + ",net" * 9,
+        "bodyparts,time," + ",".join(label for label in LABELS for _ in AXES),
+        "frame,time," + ",".join(["x,y,z"] * 3),
+        *numbers(","),
+    ],
+    "milliseconds that nobody names": [
+        "frame,time," + ",".join(f"{label}_{axis}" for label in LABELS for axis in "xyz"),
+        *(f"{i},{170000 + i * 10}," + ",".join(f"{v:.3f}" for v in row.ravel())
+          for i, row in enumerate(PLACES, 1)),
+    ],
     "comments above": [
         "# fps: 100",
         "# unit = mm",
@@ -168,7 +194,9 @@ def test_layouts(tmp_path: Path, name: str) -> None:
     assert take.labels == labels
     assert (take.rate, take.first_frame) == (100, 1)
     np.testing.assert_allclose(take.positions, PLACES / 1000, atol=0.51e-6)
-    unit_stated = not name.startswith("Qualisys")
+    unit_stated = name in ("Nexus", "Motive", "comments above", "semicolons and decimal commas")
+    assert (take.timecode == "10:44:47:00") == (name == "Qualisys with timecode")
+    assert any("guessed milliseconds" in p for p in problems) == name.startswith("milliseconds")
     assert any("guessed 1 unit = 0.001 m" in problem for problem in problems) != unit_stated
 
 
@@ -244,6 +272,10 @@ def test_the_head_counts_where_times_disagree(tmp_path: Path) -> None:
         ("Hip_x,Hip_y,Hip_z,Hip_w\n1,0,0,0\n0,1,0,0\n", "1: no positions: it holds rotations"),
         ("Hip_accX,Hip_accY,Hip_accZ\n1,2,3\n4,5,6\n", "1: no positions: it holds accelerations"),
         ("t,A X,A Y,A Z\n0,1,2,3\n1,1,oops,3\n2,1,2,3\n", "3: 'oops' is not a number, in column 3"),
+        (
+            "frame,joint,x,y,z\n0,hip,1,2,3\n0,toe,1,0,3\n1,hip,1,2,3\n1,toe,1,0,3\n",
+            "2: frame numbers repeat",
+        ),
         ("t,A X,A Y,A Z\n0,1,2,3\n1,1,2,3\n2,1", "4: cut off: the last row has 2 of 4"),
     ],
 )
