@@ -31,9 +31,8 @@ Reader = Callable[[Path, bytes, ReadOptions], tuple[Sequence[Recording], ImportR
 Writer = Callable[[Take, Sequence[Declared], WriteOptions], Iterator[bytes]]
 MarkerWriter = Callable[[MarkerTake, Sequence[Declared], WriteOptions], Iterator[bytes]]
 
-_SNIFFED = 4096
-# The names of a table's columns can be longer than that.
-_READ_TO_TELL = 1 << 16
+# The names of a table's columns alone can take many kilobytes.
+_SNIFFED = 1 << 16
 
 
 @dataclass(frozen=True)
@@ -114,7 +113,7 @@ def is_take(path: Path) -> bool:
         return one is not None and one.read is not None
     try:
         with path.open("rb") as file:
-            head = file.read(_READ_TO_TELL)
+            head = file.read(_SNIFFED)
     except OSError:
         # Reading it will tell what is wrong with it.
         return True
