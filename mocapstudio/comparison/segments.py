@@ -94,8 +94,6 @@ def suggested(recording: Take | MarkerTake) -> tuple[Segment, ...]:
     Valleys count where the energy falls to a quarter of what surrounds it; stretches that hardly
     move, such as the silence before the first technique, are no segments.
     """
-    from scipy.signal import find_peaks
-
     start, end = recording.span
     energy = kinetic_energy(recording)[start:end]
     if len(energy) < 3:
@@ -106,13 +104,48 @@ def suggested(recording: Take | MarkerTake) -> tuple[Segment, ...]:
     inside = np.flatnonzero(moving)
     level = -np.log(np.maximum(energy, _STILL * np.quantile(energy, 0.95)))
     apart = max(1, round(_SHORTEST * float(recording.rate)))
-    _, about = find_peaks(level, prominence=_DEPTH, distance=apart, plateau_size=1)
     edges = {int(inside[0]), int(inside[-1]) + 1}
-    for left, right in zip(about["left_edges"], about["right_edges"], strict=True):
-        edges |= {int(left), int(right)} if right - left > apart else {int(left + right) // 2}
+    for left, right in peaks(level, float(_DEPTH), apart):
+        edges |= {left, right + 1} if right - left > apart else {(left + right + 1) // 2}
     cuts = sorted(edge for edge in edges if inside[0] <= edge <= inside[-1] + 1)
     pairs = [(a, b) for a, b in pairwise(cuts) if b - a >= apart / 2 and moving[a:b].mean() > 0.5]
     return tuple(Segment(f"part {n}", start + a, start + b) for n, (a, b) in enumerate(pairs, 1))
+
+
+def peaks(level: Array, prominence: float, apart: int) -> list[tuple[int, int]]:
+    """Find prominent maxima, as scipy.signal does, which takes a second to import.
+
+    Parameters
+    ----------
+    level
+        (F,) values.
+    prominence
+        How far the level must fall on both sides before it rises higher.
+    apart
+        Frames between two maxima at least; of nearer ones the higher stays.
+
+    Returns
+    -------
+    First and last frame of each maximum, in order of time.
+    """
+    rises = np.flatnonzero(np.diff(level) != 0) + 1
+    starts, ends = np.append(0, rises), np.append(rises, len(level)) - 1
+    values, found = level[starts], []
+    for i in range(1, len(values) - 1):
+        if values[i] <= max(values[i - 1], values[i + 1]):
+            continue
+        higher = np.flatnonzero(values > values[i])
+        before, after = higher[higher < i], higher[higher > i]
+        left = values[before[-1] if len(before) else 0 : i].min()
+        right = values[i + 1 : after[0] + 1 if len(after) else len(values)].min()
+        if values[i] - max(left, right) >= prominence:
+            found.append(i)
+    kept: list[int] = []
+    middle = (starts + ends) / 2
+    for i in sorted(found, key=lambda i: -values[i]):
+        if all(abs(middle[i] - middle[k]) >= apart for k in kept):
+            kept.append(i)
+    return [(int(starts[i]), int(ends[i])) for i in sorted(kept)]
 
 
 def kinetic_energy(recording: Take | MarkerTake) -> Array:

@@ -29,7 +29,7 @@ _LEFT, _RIGHT, _TOP, _BOTTOM, _GAP = 176, 24, 72, 52, 22
 _SHARES = (1.5, 1.5, 2.4, 0.8, 2.4)
 """Heights of pose difference, misalignment, source map, timing lines, reference map."""
 
-_LINES = 160
+_LINES = 110
 _SIGNS = (-1, 0, 1)
 _WORDS = ("delayed", "on time", "hastened")
 _TIMING = {
@@ -89,7 +89,7 @@ def comparison_picture(
     for one in axes:
         one.set_xlim(*times.span)
     for one in axes[:4]:
-        one.tick_params(labelbottom=False)
+        one.tick_params(labelbottom=False, bottom=False)
     axes[4].set_xlabel(times.labels[0], color=palette.muted, fontsize=10)
     _title(figure, comparison, title, palette, size)
     return Picture(_to_svg(figure) if svg else to_png(figure))
@@ -205,12 +205,13 @@ def _timing_lines(axes: Axes, times: _Times, colours: NDArray[np.str_], palette:
 
 
 def _name(axes: Axes, what: str, unit: str, palette: Palette) -> None:
+    x = -41 / axes.get_window_extent().width
     axes.text(
-        -0.052, 0.5, what, transform=axes.transAxes, ha="right", va="bottom",
+        x, 0.5, what, transform=axes.transAxes, ha="right", va="bottom",
         color=palette.text, fontsize=10.5, fontweight="bold",
     )  # fmt: skip
     axes.text(
-        -0.052, 0.48, unit, transform=axes.transAxes, ha="right", va="top",
+        x, 0.48, unit, transform=axes.transAxes, ha="right", va="top",
         color=palette.muted, fontsize=9,
     )  # fmt: skip
 
@@ -264,7 +265,7 @@ def _edges(
 ) -> None:
     for frame in (segment.start, segment.end):
         for one in axes:
-            one.axvline(_at(at, frame), color=palette.text, linewidth=0.6, alpha=0.45)
+            one.axvline(_at(at, frame), color=palette.text, linewidth=0.6, alpha=0.3)
 
 
 def _at(times: NDArray[np.float64], frame: int) -> float:
@@ -281,13 +282,13 @@ def _title(
     about = f"dissimilarity {comparison.dissimilarity:.3f}"
     about += f" · doubt {comparison.doubt:.0%}"
     figure.text(1 - _RIGHT / width, line, about, color=palette.muted, fontsize=10, ha="right")
-    x = 1 - (_RIGHT + 300) / width
+    x = 1 - (_RIGHT + 330) / width
     for word, colour in zip(_WORDS, _timing_colours(palette), strict=True):
         share = np.mean(comparison.timing == _SIGNS[_WORDS.index(word)])
         figure.text(x, line - 22 / height, "■", color=colour, fontsize=11)
         text = f"{word} {share:.0%}"
-        figure.text(x + 14 / width, line - 22 / height, text, color=palette.muted, fontsize=9)
-        x += 102 / width
+        figure.text(x + 16 / width, line - 22 / height, text, color=palette.muted, fontsize=9)
+        x += 112 / width
 
 
 def _to_svg(figure: Figure) -> bytes:

@@ -51,7 +51,7 @@ class PoseDistances:
     def __init__(self, reference: F32, source: F32) -> None:
         _check(reference, source)
         self.reference, self.source = _even(reference), _even(source)
-        self._columns = np.ascontiguousarray(self.source.T)
+        self._chunks = _chunked(self.source)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -63,16 +63,17 @@ class PoseDistances:
         rows = self.reference[start:end]
 
         def work(first: int, last: int) -> None:
-            kernels.distances(rows[first:last], self._columns, out[first:last])
+            kernels.distances(rows[first:last], self._chunks, out[first:last])
 
         parallel.for_blocks(len(rows), work, _AT_LEAST)
 
     def fill_within(self, low: NDArray[np.int32], out: F32) -> None:
         """Write the costs of a band (R, W) whose rows begin at the source frames `low` (R,)."""
+        columns = np.ascontiguousarray(self.source.T)
 
         def work(first: int, last: int) -> None:
             rows = slice(first, last)
-            kernels.distances_within(self.reference[rows], self._columns, low[rows], out[rows])
+            kernels.distances_within(self.reference[rows], columns, low[rows], out[rows])
 
         parallel.for_blocks(len(self.reference), work, _AT_LEAST)
 
@@ -171,3 +172,11 @@ def _even(poses: F32) -> F32:
     poses = np.asarray(poses, np.float32)
     odd = poses.shape[1] % 2
     return np.ascontiguousarray(np.pad(poses, ((0, 0), (0, odd))) if odd else poses)
+
+
+def _chunked(poses: F32) -> F32:
+    """(chunks, D, CHUNK) copy of poses (F, D), time last, filled up with the last pose."""
+    frames = np.arange(-(-len(poses) // kernels.CHUNK) * kernels.CHUNK)
+    whole = poses[np.minimum(frames, len(poses) - 1)]
+    chunks = whole.reshape(-1, kernels.CHUNK, poses.shape[1])
+    return np.ascontiguousarray(chunks.transpose(0, 2, 1))

@@ -13,7 +13,9 @@ from numpy.typing import NDArray
 F32 = NDArray[np.float32]
 I32 = NDArray[np.int32]
 
-_CHUNK = 256
+CHUNK = 256
+"""Source frames that `distances` takes at a time."""
+
 _ROWS = 4
 _ZERO = np.float32(0.0)
 _INF = np.float32(np.inf)
@@ -24,50 +26,42 @@ def distances(reference: F32, source: F32, out: F32) -> None:
     """Euclidean distances between poses, four reference frames at a time.
 
     Differences are squared as they are: ``|x|^2 + |y|^2 - 2 x.y`` does not give 0 for equal poses
-    in float32.
+    in float32. Loops over a whole chunk of source frames, of a length that is known beforehand,
+    are what makes it fast.
 
     Parameters
     ----------
     reference
         (R, D); D even.
     source
-        (D, S).
+        (chunks, D, CHUNK): source frames in chunks, the last filled up with anything.
     out
         (R, S), overwritten.
     """
-    rows, dims, frames = reference.shape[0], source.shape[0], source.shape[1]
-    t0, t1 = np.empty(_CHUNK, np.float32), np.empty(_CHUNK, np.float32)
-    t2, t3 = np.empty(_CHUNK, np.float32), np.empty(_CHUNK, np.float32)
-    for start in range(0, frames, _CHUNK):
-        width = min(_CHUNK, frames - start)
+    rows, frames, dims = reference.shape[0], out.shape[1], source.shape[1]
+    total = np.empty((_ROWS, CHUNK), np.float32)
+    for c in range(source.shape[0]):
+        start, chunk = c * CHUNK, source[c]
+        width = min(CHUNK, frames - start)
         for i in range(0, rows, _ROWS):
             i1, i2, i3 = min(i + 1, rows - 1), min(i + 2, rows - 1), min(i + 3, rows - 1)
-            t0[:], t1[:], t2[:], t3[:] = _ZERO, _ZERO, _ZERO, _ZERO
+            total[:] = _ZERO
             for d in range(0, dims, 2):
-                a0, a1, a2, a3 = (
-                    reference[i, d],
-                    reference[i1, d],
-                    reference[i2, d],
-                    reference[i3, d],
-                )
-                b0, b1, b2, b3 = (
-                    reference[i, d + 1],
-                    reference[i1, d + 1],
-                    reference[i2, d + 1],
-                    reference[i3, d + 1],
-                )
-                ya, yb = source[d, start:], source[d + 1, start:]
-                for j in range(width):
-                    p, q = ya[j], yb[j]
-                    t0[j] += (a0 - p) * (a0 - p) + (b0 - q) * (b0 - q)
-                    t1[j] += (a1 - p) * (a1 - p) + (b1 - q) * (b1 - q)
-                    t2[j] += (a2 - p) * (a2 - p) + (b2 - q) * (b2 - q)
-                    t3[j] += (a3 - p) * (a3 - p) + (b3 - q) * (b3 - q)
+                a, b = reference[i, d], reference[i, d + 1]
+                a1, b1 = reference[i1, d], reference[i1, d + 1]
+                a2, b2 = reference[i2, d], reference[i2, d + 1]
+                a3, b3 = reference[i3, d], reference[i3, d + 1]
+                for j in range(CHUNK):
+                    p, q = chunk[d, j], chunk[d + 1, j]
+                    total[0, j] += (a - p) * (a - p) + (b - q) * (b - q)
+                    total[1, j] += (a1 - p) * (a1 - p) + (b1 - q) * (b1 - q)
+                    total[2, j] += (a2 - p) * (a2 - p) + (b2 - q) * (b2 - q)
+                    total[3, j] += (a3 - p) * (a3 - p) + (b3 - q) * (b3 - q)
             for j in range(width):
-                out[i, start + j] = np.sqrt(t0[j])
-                out[i1, start + j] = np.sqrt(t1[j])
-                out[i2, start + j] = np.sqrt(t2[j])
-                out[i3, start + j] = np.sqrt(t3[j])
+                out[i, start + j] = np.sqrt(total[0, j])
+                out[i1, start + j] = np.sqrt(total[1, j])
+                out[i2, start + j] = np.sqrt(total[2, j])
+                out[i3, start + j] = np.sqrt(total[3, j])
 
 
 @nb.njit(nogil=True, cache=True, fastmath=True)
