@@ -7,16 +7,17 @@ performer is. Only the last row is kept, so a stream may go on for ever.
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mocapstudio.comparison.labels import Labels
-from mocapstudio.comparison.online_features import F32, F64, Reference
+from mocapstudio.comparison.online_features import F32, F64
+from mocapstudio.comparison.online_reference import MOTION_SECONDS, Reference
 from mocapstudio.motion.errors import MocapError, ParameterError
 from mocapstudio.similarity.online import kernels
 
@@ -24,6 +25,8 @@ FIRST_ANSWER = 3
 """Frames of the action after which the alignment counts: with fewer it only says 'beginning'."""
 
 _LEAST_SEEN = 0.25
+_PAST = 256
+_SAME_TIME = 1e-6
 
 
 class Variant(StrEnum):
@@ -78,9 +81,10 @@ class OnlineAligner:
     Parameters
     ----------
     reference
-        R frames of D rows.
+        R frames of N rows.
     weights
-        Weight of each joint or bone by name, those that are not named 0; all 1 by default.
+        Weight of each row by name, those that are not named 0; `Reference.plain_weights` by
+        default.
     variant
         How paths are accumulated.
     labels
@@ -104,9 +108,9 @@ class OnlineAligner:
     ) -> None:
         self.reference = reference
         self.variant = variant
-        self.weights = weights_for(reference.features.names, weights)
-        self._planes = np.ascontiguousarray(reference.poses.transpose(1, 2, 0))
-        self._names = _names_of_frames(reference, labels)
+        self.weights = weights_for(reference, weights)
+        self._planes = np.ascontiguousarray(reference.rows.transpose(1, 2, 0))
+        self._names = reference.segment_names(labels) if labels is not None else None
         size = len(reference)
         self._costs = np.empty(size, np.float32)
         self._rows = np.zeros((2, 2, size))
@@ -118,7 +122,9 @@ class OnlineAligner:
     def restart(self) -> None:
         """Forget the stream: the next frame is the first of an action."""
         self.frames = 0
+        self._fed = 0
         self._turn: F32 | None = None
+        self._past: deque[tuple[float, F32]] = deque(maxlen=_PAST)
         self._began: float | None = None
         self._end = 0
 
@@ -138,17 +144,16 @@ class OnlineAligner:
         Where the performer is, or None where less than a quarter of the weight can be seen: such
         a frame changes nothing.
         """
-        weights = self._seen_weights(pose)
-        if weights is None:
+        if not self._is_seen(pose):
             return None
-        if self._turn is None:
-            self._turn = self.reference.features.start(pose)
-        if self._turn is not None:
-            pose = self.reference.features.turned(pose, self._turn)
+        features = self.reference.features
+        turn = self._turn if self._turn is not None else features.start(pose)
+        rows = self._rows_of(pose if turn is None else features.turned(pose, turn), time)
+        weights = self._seen_weights(rows)
+        self._turn = turn
         if weights is not self.weights:
-            pose = np.nan_to_num(pose)
-        planes, directions = self._planes, self.reference.features.directions
-        kernels.pose_costs(np.ascontiguousarray(pose), planes, weights, directions, self._costs)
+            rows = np.nan_to_num(rows)
+        kernels.pose_costs(rows, self._planes, weights, self.reference.directions, self._costs)
         return self.feed_costs(self._costs, time)
 
     def feed_costs(self, costs: F32, time: float | None = None) -> AlignmentStep:
@@ -203,38 +208,54 @@ class OnlineAligner:
             self.frames >= FIRST_ANSWER,
         )
 
-    def _seen_weights(self, pose: F32) -> F32 | None:
+    def _rows_of(self, pose: F32, time: float | None) -> F32:
+        """(N, 4): a turned pose and, where the reference has it, how it has moved."""
+        if not self.reference.motion:
+            return np.ascontiguousarray(pose)
+        lag = MOTION_SECONDS if time is not None else round(MOTION_SECONDS * self.reference.rate)
+        now = time if time is not None else float(self._fed)
+        self._fed += 1
+        past = self._past
+        past.append((now, pose))
+        while len(past) > 1 and past[1][0] <= now - lag + _SAME_TIME:
+            past.popleft()
+        rows = np.empty((2 * len(pose), 4), np.float32)
+        rows[: len(pose)] = pose
+        directions = self.reference.features.directions
+        kernels.displacements(past[0][1], rows[: len(pose)], directions, rows[len(pose) :])
+        return rows
+
+    def _is_seen(self, pose: F32) -> bool:
         # One sum is the cheapest test for any NaN.
         if not np.isnan(pose.sum()):
+            return True
+        seen = ~np.isnan(pose).any(axis=1)
+        weights = self.weights.reshape(-1, len(pose)).sum(axis=0)
+        return bool(weights[seen].sum() >= _LEAST_SEEN * weights.sum())
+
+    def _seen_weights(self, rows: F32) -> F32:
+        """(N,) the weights, those of missing rows dealt out to the others."""
+        if not np.isnan(rows.sum()):
             return self.weights
-        seen = np.where(np.isnan(pose).any(axis=1), np.float32(0.0), self.weights)
+        seen = np.where(np.isnan(rows).any(axis=1), np.float32(0.0), self.weights)
         share = float(seen.sum()) / float(self.weights.sum())
-        return None if share < _LEAST_SEEN else np.asarray(seen / share, dtype=np.float32)
+        return np.asarray(seen / share if share > 0 else seen, dtype=np.float32)
 
 
-def weights_for(names: tuple[str, ...], weights: Mapping[str, float] | None) -> F32:
-    """(D,) weights in the order of `names`; those not named are 0, all 1 where none are given.
+def weights_for(reference: Reference, weights: Mapping[str, float] | None) -> F32:
+    """(N,) weights of the reference's rows; those not named are 0.
 
     Raises
     ------
     ParameterError
-        If none of them belongs to `names`, or a weight is negative or not finite.
+        If none of them belongs to a row, or a weight is negative or not finite.
     """
     if weights is None:
-        return np.ones(len(names), np.float32)
+        return reference.plain_weights
     for name, weight in weights.items():
         if not (np.isfinite(weight) and weight >= 0):
             raise ParameterError(f"weight {weight} of {name}: a number of at least 0 is wanted")
-    found = np.array([weights.get(name, 0.0) for name in names], np.float32)
+    found = np.array([weights.get(name, 0.0) for name in reference.names], np.float32)
     if not found.any():
         raise ParameterError("no joint of the reference has a weight")
     return found
-
-
-def _names_of_frames(reference: Reference, labels: Labels | None) -> list[str | None]:
-    if labels is None:
-        return []
-    rate = reference.rate * reference.frames_each
-    if abs(float(labels.rate) - rate) > 1e-6 * rate:
-        labels = labels.at_rate(Fraction(rate).limit_denominator(100_000))
-    return [labels.at(reference.own_frame(i)) for i in range(len(reference))]

@@ -9,7 +9,6 @@ turned about the vertical so that it begins as the reference does.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Protocol
 
 import numpy as np
@@ -26,6 +25,8 @@ from mocapstudio.similarity.texture import comparable_joints
 
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
+I32 = NDArray[np.int32]
+Recording = Take | MarkerTake
 
 _SHORTEST_BONE = 0.04
 _SEEN = 0.5
@@ -42,7 +43,7 @@ class Features(Protocol):
     def directions(self) -> bool:
         """Whether rows are directions of bones, with a fourth component of 0, or quaternions."""
 
-    def of(self, take: Take | MarkerTake) -> F32:
+    def of(self, take: Recording) -> F32:
         """(F, D, 4): the poses of a take's trimmed span; NaN where a row cannot be told."""
 
     def start(self, pose: F32) -> F32 | None:
@@ -81,7 +82,7 @@ class JointRotations:
         hips = reference.skeleton.names[topology(reference.skeleton).hips]
         return cls(names, names.index(hips) if hips in names else None)
 
-    def of(self, take: Take | MarkerTake) -> F32:
+    def of(self, take: Recording) -> F32:
         """(F, D, 4) quaternions; of the hips in the world. See `Features.of`."""
         if isinstance(take, MarkerTake):
             raise SkeletonMismatchError(f"{take.name} holds markers, the reference joints")
@@ -153,10 +154,10 @@ class BoneDirections:
         pairs = tuple((labels[a], labels[b]) for a, b in bones)
         names = tuple(f"{a}-{b}" for a, b in pairs)
         empty = np.zeros((len(pairs), 4), np.float32)
-        poses = _completed(cls(names, pairs, empty).of(reference))
+        poses = completed(cls(names, pairs, empty).of(reference))
         return cls(names, pairs, poses[0])
 
-    def of(self, take: Take | MarkerTake) -> F32:
+    def of(self, take: Recording) -> F32:
         """(F, D, 4) directions, NaN where a marker is missing. See `Features.of`."""
         if isinstance(take, Take):
             raise SkeletonMismatchError(f"{take.name} holds joints, the reference markers")
@@ -190,78 +191,7 @@ class BoneDirections:
         return np.asarray(poses @ turn.T, dtype=np.float32)
 
 
-@dataclass(frozen=True, eq=False)
-class Reference:
-    """The performance that others are aligned with, R frames at the rate of alignment.
-
-    Parameters
-    ----------
-    name
-        Of the take.
-    features
-        What is compared.
-    poses
-        (R, D, 4) turned as the action begins, without gaps.
-    rate
-        Frames a second of `poses`.
-    start
-        The take's own frame that is the first here.
-    frames_each
-        Own frames of the take for one frame of `poses`.
-    """
-
-    name: str
-    features: Features
-    poses: F32
-    rate: float
-    start: int = 0
-    frames_each: float = 1.0
-
-    def __len__(self) -> int:
-        return len(self.poses)
-
-    def own_frame(self, at: int) -> int:
-        """Frame of the take, 0-based at its own rate, nearest to a frame of `poses`."""
-        return self.start + round(at * self.frames_each)
-
-
-def reference_of(
-    take: Take | MarkerTake,
-    streams: tuple[Take | MarkerTake, ...] = (),
-    rate: Fraction | float | None = None,
-) -> Reference:
-    """Prepare a take as a reference for streams.
-
-    Parameters
-    ----------
-    take
-        The reference; its trimmed span is the action.
-    streams
-        Takes that are going to be aligned with it: only what all of them have is compared.
-    rate
-        Frames a second of the alignment: the take's own by default. Streams of about this rate
-        align best, since the paths then run near the diagonal.
-
-    Raises
-    ------
-    SkeletonMismatchError
-        If the takes have too little in common.
-    MocapError
-        If the reference has fewer than three frames.
-    """
-    features = features_of(take, streams)
-    raw = _completed(features.of(take))
-    turn = features.start(raw[0])
-    poses = raw if turn is None else features.turned(raw, turn)
-    each = 1.0 if rate is None else float(take.rate) / float(rate)
-    if each != 1.0:
-        poses = _sampled(poses, each)
-    if len(poses) < 3:
-        raise MocapError(f"{take.name}: {len(poses)} frames are too few for a reference")
-    return Reference(take.name, features, poses, float(take.rate) / each, take.span[0], each)
-
-
-def features_of(take: Take | MarkerTake, others: tuple[Take | MarkerTake, ...] = ()) -> Features:
+def features_of(take: Recording, others: tuple[Recording, ...] = ()) -> Features:
     """Tell what takes have in common that can be compared.
 
     Raises
@@ -299,7 +229,7 @@ def _rigid_pairs(take: MarkerTake, kept: list[int]) -> list[tuple[int, int]]:
     return [(kept[int(a)], kept[int(b)]) for a, b in zip(rows, columns, strict=True)]
 
 
-def _completed(poses: F32) -> F32:
+def completed(poses: F32) -> F32:
     """Bridge gaps of each row linearly, and hold its ends."""
     if not np.isnan(poses).any():
         return poses
@@ -310,18 +240,10 @@ def _completed(poses: F32) -> F32:
             raise MocapError(f"row {row} of the reference is never seen")
         for k in range(poses.shape[2]):
             filled[:, row, k] = np.interp(frames, frames[seen], poses[seen, row, k])
-    return _unit(filled)
+    return unit_rows(filled)
 
 
-def _sampled(poses: F32, each: float) -> F32:
-    count = int((len(poses) - 1) / each + 1e-6) + 1
-    at = np.arange(count) * each
-    low = np.minimum(at.astype(np.int64), max(len(poses) - 2, 0))
-    part = (at - low).astype(np.float32)[:, None, None]
-    a, b = poses[low], poses[np.minimum(low + 1, len(poses) - 1)]
-    return _unit(a * (1 - part) + b * part)
-
-
-def _unit(poses: F32) -> F32:
+def unit_rows(poses: F32) -> F32:
+    """Scale rows (..., 4) to unit length."""
     length = np.linalg.norm(poses, axis=-1, keepdims=True)
     return np.asarray(poses / np.where(length > 0, length, 1.0), dtype=np.float32)

@@ -10,11 +10,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from made_takes import elsewhere, paced, walking
+from scipy.spatial.transform import Rotation
 
 from mocapstudio.comparison.labels import Labels
 from mocapstudio.comparison.model import Segment
 from mocapstudio.comparison.online import OnlineAligner, Variant
-from mocapstudio.comparison.online_features import JointRotations, Reference, reference_of
+from mocapstudio.comparison.online_features import JointRotations
+from mocapstudio.comparison.online_reference import MOTION, Reference, reference_of
 from mocapstudio.motion.errors import MocapError, ParameterError
 
 NAIVE = {Variant.PLAIN: "plain", Variant.DIAGONAL: "diagonal", Variant.PATH_LENGTH: "length"}
@@ -22,7 +24,7 @@ NAIVE = {Variant.PLAIN: "plain", Variant.DIAGONAL: "diagonal", Variant.PATH_LENG
 
 def any_reference(frames: int) -> Reference:
     poses = np.tile(np.float32([0, 0, 0, 1]), (frames, 1, 1))
-    return Reference("made", JointRotations(("a",), None), poses, 30.0)
+    return Reference("made", JointRotations(("a",), None), poses, 30.0, Fraction(30))
 
 
 # Sixteenths, so that sums are exact and ties are ties for both sides.
@@ -67,21 +69,32 @@ def test_a_short_memory_keeps_the_end_of_the_path(costs: np.ndarray, kept: int) 
         assert short.path().tolist() == expected
 
 
-@pytest.mark.parametrize("weighted", [False, True])
-def test_poses_are_compared_as_equations_1_and_4_say(weighted: bool) -> None:
+@pytest.mark.parametrize(("weighted", "motion"), [(False, False), (True, False), (True, True)])
+def test_poses_are_compared_as_equations_1_and_4_say(weighted: bool, motion: bool) -> None:
     one, other = walking(2.0, seed=1), walking(1.0, seed=2)
-    reference = reference_of(one, (other,))
-    names = reference.features.names
+    reference = reference_of(one, (other,), motion=motion)
     rng = np.random.default_rng(0)
-    weights = {name: float(rng.uniform(0, 3)) for name in names} if weighted else None
-    aligner = OnlineAligner(reference, weights, path_frames=40)
-    poses = reference.features.of(other)
-    turned = reference.features.turned(poses, reference.features.start(poses[0]))
-    for pose, expected in zip(poses, turned, strict=True):
-        step = aligner.feed(pose)
-        used = [1.0 if weights is None else weights[name] for name in names]
-        wanted = naive.pose_distance(expected, reference.poses[step.at], np.array(used))
-        assert step.pose_cost == pytest.approx(wanted, abs=2e-5)
+    weights = {name: float(rng.uniform(0, 3)) for name in reference.names} if weighted else None
+    aligner = OnlineAligner(reference, weights)
+    used = [1.0 if weights is None else weights[name] for name in reference.names]
+    expected = reference_of(other, motion=motion, features=reference.features).rows
+    for i, pose in enumerate(reference.features.of(other)):
+        step = aligner.feed(pose, i / 30)
+        wanted = naive.pose_distance(expected[i], reference.rows[step.at], np.array(used))
+        assert step.pose_cost == pytest.approx(wanted, abs=5e-5)
+
+
+def test_motion_is_the_rotation_since_a_fifth_of_a_second_before() -> None:
+    take = walking(2.0, seed=4)
+    reference = reference_of(take)
+    count = len(reference.features.names)
+    assert reference.names[count] == reference.names[0] + MOTION
+    head = reference.features.names.index("Head")
+    own = Rotation.from_quat(take.rotations[:, take.skeleton.index["Head"]])
+    for frame in (3, 6, 30, 59):
+        expected = own[max(frame - 6, 0)].inv() * own[frame]
+        found = Rotation.from_quat(reference.rows[frame, count + head])
+        assert (expected.inv() * found).magnitude() < 2e-3
 
 
 def test_neither_place_nor_heading_of_the_performer_counts() -> None:

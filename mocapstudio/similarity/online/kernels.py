@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
+I32 = NDArray[np.int32]
 I64 = NDArray[np.int64]
 U8 = NDArray[np.uint8]
 
@@ -23,19 +24,20 @@ _ONE = np.float32(1.0)
 
 
 @nb.njit(nogil=True, cache=True, fastmath=True)
-def pose_costs(pose: F32, reference: F32, weights: F32, directions: bool, out: F32) -> None:
+def pose_costs(pose: F32, reference: F32, weights: F32, directions: int, out: F32) -> None:
     """Weighted distance of one pose from every reference frame (equations 1 and 4).
 
     Parameters
     ----------
     pose
-        (D, 4): unit quaternions, or unit directions with a fourth component of 0.
+        (D, 4): unit directions with a fourth component of 0, then unit quaternions.
     reference
         (D, 4, R), time last.
     weights
         (D,).
     directions
-        False: ``sum_d w_d (1 - |q_d . p_d|)``; True: ``sum_d w_d (1 - q_d . p_d) / 2``.
+        How many of the rows are directions; they count ``w_d (1 - q_d . p_d) / 2``, the others
+        ``w_d (1 - |q_d . p_d|)``.
     out
         (R,), overwritten.
     """
@@ -45,7 +47,7 @@ def pose_costs(pose: F32, reference: F32, weights: F32, directions: bool, out: F
         x, y, z, w = pose[d, 0], pose[d, 1], pose[d, 2], pose[d, 3]
         weight = weights[d]
         px, py, pz, pw = reference[d, 0], reference[d, 1], reference[d, 2], reference[d, 3]
-        if directions:
+        if d < directions:
             for j in range(frames):
                 dot = x * px[j] + y * py[j] + z * pz[j]
                 out[j] += weight * _HALF * (_ONE - dot)
@@ -53,6 +55,36 @@ def pose_costs(pose: F32, reference: F32, weights: F32, directions: bool, out: F
             for j in range(frames):
                 dot = x * px[j] + y * py[j] + z * pz[j] + w * pw[j]
                 out[j] += weight * (_ONE - abs(dot))
+
+
+@nb.njit(nogil=True, cache=True)
+def displacements(before: F32, now: F32, directions: bool, out: F32) -> None:
+    """Rotation of every row from an earlier pose to a later one.
+
+    Parameters
+    ----------
+    before, now
+        (D, 4) quaternions, or directions with a fourth component of 0.
+    directions
+        Which of the two; of directions the shortest rotation from one to the other.
+    out
+        (D, 4) quaternions, overwritten.
+    """
+    for d in range(before.shape[0]):
+        ax, ay, az, aw = before[d, 0], before[d, 1], before[d, 2], before[d, 3]
+        bx, by, bz, bw = now[d, 0], now[d, 1], now[d, 2], now[d, 3]
+        if directions:
+            x, y, z = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+            w = _ONE + ax * bx + ay * by + az * bz
+        else:
+            x = aw * bx - ax * bw - ay * bz + az * by
+            y = aw * by + ax * bz - ay * bw - az * bx
+            z = aw * bz - ax * by + ay * bx - az * bw
+            w = aw * bw + ax * bx + ay * by + az * bz
+        length = np.sqrt(x * x + y * y + z * z + w * w)
+        if length < np.float32(1e-6):
+            x, w, length = _ONE, np.float32(0.0), _ONE
+        out[d, 0], out[d, 1], out[d, 2], out[d, 3] = x / length, y / length, z / length, w / length
 
 
 @nb.njit(nogil=True, cache=True)
@@ -167,3 +199,125 @@ def trace_back(steps: U8, newest: int, frame: int, end: int, path: I64) -> int:
         at -= 1
         path[at, 0], path[at, 1] = end, frame
     return int(at)
+
+
+@nb.njit(nogil=True, cache=True, fastmath=True)
+def row_distances(poses: F32, reference: F32, directions: int, out: F32) -> None:
+    """Distance of every pose from every reference frame, row by row and unweighted.
+
+    Parameters
+    ----------
+    poses
+        (S, D, 4).
+    reference
+        (D, 4, R).
+    directions
+        As in `pose_costs`.
+    out
+        (D, S, R), overwritten.
+    """
+    for d in range(reference.shape[0]):
+        px, py, pz, pw = reference[d, 0], reference[d, 1], reference[d, 2], reference[d, 3]
+        for i in range(poses.shape[0]):
+            x, y, z, w = poses[i, d, 0], poses[i, d, 1], poses[i, d, 2], poses[i, d, 3]
+            row = out[d, i]
+            if d < directions:
+                for j in range(px.shape[0]):
+                    row[j] = _HALF * (_ONE - (x * px[j] + y * py[j] + z * pz[j]))
+            else:
+                for j in range(px.shape[0]):
+                    dot = x * px[j] + y * py[j] + z * pz[j] + w * pw[j]
+                    row[j] = _ONE - abs(dot)
+
+
+@nb.njit(nogil=True, cache=True)
+def path_qualities(
+    costs: F32,
+    source: I32,
+    reference: I32,
+    seen: I64,
+    by_length: bool,
+    diagonal: float,
+    closed: bool,
+    out: F64,
+) -> None:
+    """Share of path cells whose segments agree, for P sets of weights at once.
+
+    The accumulation is that of `next_row`; the P costs of a cell lie side by side, so that they
+    are worked on together.
+
+    Parameters
+    ----------
+    costs
+        (S, R, P) distance of source from reference frames.
+    source, reference
+        (S,) and (R,) segment of each frame; source frames of -1 do not count.
+    seen
+        (K,) numbers of source frames after which a path is traced back, ascending.
+    by_length, diagonal
+        As in `next_row`.
+    closed
+        True: every path ends in the last reference frame (offline time warping).
+    out
+        (P, K), overwritten; 1 where no cell counts.
+    """
+    frames, size, sets = costs.shape
+    total = np.full((2, size + 1, sets), np.inf)
+    length = np.ones((2, size + 1, sets))
+    steps = np.empty((frames, size, sets), np.uint8)
+    total[1, 0] = 0.0
+    length[1, 0] = 0.0
+    at = 0
+    for i in range(frames):
+        before, now = total[1 - i % 2], total[i % 2]
+        lengths_before, lengths = length[1 - i % 2], length[i % 2]
+        for j in range(size):
+            for p in range(sets):
+                cost = np.float64(costs[i, j, p])
+                a, a_length = before[j, p], lengths_before[j, p]
+                b, b_length = before[j + 1, p], lengths_before[j + 1, p]
+                c, c_length = now[j, p], lengths[j, p]
+                a_cost = cost if i == 0 else diagonal * cost
+                best, best_length, step = a + a_cost, a_length + 1.0, DIAGONAL
+                if _less(b + cost, b_length + 1.0, best, best_length, by_length):
+                    best, best_length, step = b + cost, b_length + 1.0, STAY
+                if _less(c + cost, c_length + 1.0, best, best_length, by_length):
+                    best, best_length, step = c + cost, c_length + 1.0, SKIP
+                if by_length:
+                    step = DIAGONAL
+                    if b * a_length < a * b_length:
+                        a, a_length, step = b, b_length, STAY
+                    if c * a_length < a * c_length:
+                        step = SKIP
+                now[j + 1, p], lengths[j + 1, p] = best, best_length
+                steps[i, j, p] = step
+        if i == 0:
+            total[1, 0] = np.inf
+            length[1, 0] = 1.0
+        while at < seen.shape[0] and seen[at] == i + 1:
+            for p in range(sets):
+                end = size - 1 if closed else int(np.argmin(now[1:, p]))
+                out[p, at] = _agreement(steps[:, :, p], i, end, source, reference)
+            at += 1
+
+
+@nb.njit(nogil=True, cache=True)
+def _agreement(steps: U8, frame: int, end: int, source: I32, reference: I32) -> float:
+    agree, count = 0, 0
+    while True:
+        if source[frame] >= 0:
+            count += 1
+            if source[frame] == reference[end]:
+                agree += 1
+        if frame == 0 and end == 0:
+            break
+        step = steps[frame, end]
+        if frame == 0:
+            step = SKIP
+        elif end == 0:
+            step = STAY
+        if step != SKIP:
+            frame -= 1
+        if step != STAY:
+            end -= 1
+    return agree / count if count else 1.0

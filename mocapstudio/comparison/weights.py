@@ -1,0 +1,158 @@
+"""Joint weights of the online alignment, and their file."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from mocapstudio.comparison.online_reference import MOTION, Reference
+from mocapstudio.formats.atomic import write_whole
+from mocapstudio.motion.errors import FileError, MocapError, ParameterError, SkeletonMismatchError
+
+
+@dataclass(frozen=True)
+class FoldQuality:
+    """What one fold of a cross-validation gave.
+
+    Parameters
+    ----------
+    performers
+        Whose takes were left out of training and then aligned.
+    training, test, unweighted
+        Mean quality of the takes trained on, of those left out, and of the latter with all
+        weights 1, each averaged over the shares of the movement seen.
+    """
+
+    performers: tuple[str, ...]
+    training: float
+    test: float
+    unweighted: float
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain objects for JSON."""
+        return {
+            "performers": list(self.performers),
+            "training": self.training,
+            "test": self.test,
+            "unweighted": self.unweighted,
+        }
+
+
+@dataclass(frozen=True)
+class JointWeights:
+    """Weights by the name of a joint or bone, with a mean of 1 over those that were trained.
+
+    Parameters
+    ----------
+    weights
+        At least 0.
+    reference
+        Name of the take they were learnt for.
+    folds
+        How well they do on performers that they were not learnt from.
+    provenance
+        Version, parameters and takes.
+    """
+
+    weights: Mapping[str, float]
+    reference: str = ""
+    folds: tuple[FoldQuality, ...] = ()
+    provenance: Mapping[str, Any] = field(default_factory=dict)
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain objects for JSON."""
+        return {
+            "reference": self.reference,
+            "weights": dict(self.weights),
+            "folds": [fold.to_json() for fold in self.folds],
+            "provenance": dict(self.provenance),
+        }
+
+    @property
+    def motion(self) -> bool:
+        """Whether there are weights for how joints move, beside those of their poses."""
+        return any(name.endswith(MOTION) for name in self.weights)
+
+    def fitting(self, reference: Reference) -> dict[str, float]:
+        """Weights of the rows that are compared; rows without one count nothing.
+
+        Raises
+        ------
+        SkeletonMismatchError
+            If rows with less than half of the whole weight are compared.
+        """
+        found = {name: self.weights[name] for name in reference.names if name in self.weights}
+        if 2 * sum(found.values()) < sum(self.weights.values()):
+            raise SkeletonMismatchError(
+                f"the weights are not for {reference.name}: only {len(found)} of"
+                f" {len(self.weights)} belong to something that is compared"
+            )
+        return found
+
+
+def write_weights(weights: JointWeights, path: Path) -> None:
+    """Write weights as JSON.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be written; an older file of that name is then left as it was.
+    """
+    text = json.dumps(weights.to_json(), indent=2, ensure_ascii=False, allow_nan=False)
+    write_whole(path, [(text + "\n").encode()])
+
+
+def read_weights(path: Path) -> JointWeights:
+    """Read what `write_weights` wrote; an object ``{"weights": {name: weight}}`` is enough.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read, is no JSON, or does not hold weights.
+    """
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as cause:
+        why = (cause.strerror or str(cause)).lower()
+        raise FileError(path, f"cannot be read: {why}") from cause
+    except UnicodeDecodeError as cause:
+        raise FileError(path, "is not UTF-8 text", offset=cause.start) from cause
+    except json.JSONDecodeError as cause:
+        raise FileError(path, f"is not JSON: {cause.msg}", line=cause.lineno) from cause
+    except RecursionError as cause:
+        raise FileError(path, "does not hold joint weights: nested too deeply") from cause
+    try:
+        return _from_json(content)
+    except (MocapError, KeyError, TypeError, ValueError, AttributeError) as cause:
+        raise FileError(path, f"does not hold joint weights: {_said(cause)}") from cause
+
+
+def _from_json(content: Any) -> JointWeights:
+    if not isinstance(content, dict) or not isinstance(content.get("weights"), dict):
+        raise ParameterError("an object with weights is wanted")
+    weights = content["weights"]
+    for name, weight in weights.items():
+        if isinstance(weight, bool) or not isinstance(weight, int | float):
+            raise ParameterError(f"the weight of {name} is no number")
+        if not 0 <= weight < float("inf"):
+            raise ParameterError(f"the weight of {name} is {weight}, not a number of at least 0")
+    if not any(weights.values()):
+        raise ParameterError("no weight is above 0")
+    folds = tuple(
+        FoldQuality(
+            tuple(map(str, one["performers"])),
+            float(one["training"]),
+            float(one["test"]),
+            float(one["unweighted"]),
+        )
+        for one in content.get("folds", ())
+    )
+    provenance = dict(content.get("provenance", {}))
+    return JointWeights(weights, str(content.get("reference", "")), folds, provenance)
+
+
+def _said(cause: Exception) -> str:
+    return f"{cause.args[0]} is missing" if isinstance(cause, KeyError) else str(cause)

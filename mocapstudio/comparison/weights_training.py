@@ -1,0 +1,281 @@
+"""Joint weights learnt by evolution from labelled performances (paper 3, section 4.2).
+
+CMA-ES looks for the weights under which the open-end alignment puts most path cells into the right
+segment, averaged over shares of the movement seen. Cross-validation leaves out one group of
+performers at a time, so that what is reported holds for people whom the training has not seen.
+
+Beyond the paper: with the tens of performances that people have, weights of forty rows learn the
+performances by heart. So the evolution begins at the best of a few plain sets of weights and pays
+for leaving it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from mocapstudio.comparison.online import Variant
+from mocapstudio.comparison.online_features import F32, F64, I32
+from mocapstudio.comparison.online_reference import MOTION_WEIGHT, Reference
+from mocapstudio.comparison.weights import FoldQuality, JointWeights
+from mocapstudio.comparison.weights_quality import SHARES, Example, Trials
+from mocapstudio.comparison.weights_variance import variance_weights
+from mocapstudio.motion.errors import MocapError, ParameterError
+from mocapstudio.motion.progress import Progress
+
+
+@dataclass(frozen=True)
+class TrainingParameters:
+    """How weights are learnt; see `PAPER` for those of paper 3.
+
+    Parameters
+    ----------
+    iterations
+        Of the evolution.
+    step
+        Initial step size; weights begin at 1.
+    parents, offspring
+        Of each iteration.
+    folds
+        Of the cross-validation, at most as many as there are performers; 0 for none.
+    variant
+        How paths are accumulated.
+    shares
+        Shares of the movement seen over which the quality is averaged.
+    stiffness
+        What the mean squared distance of the weights from where they began costs, in quality.
+    motion_starts
+        Weights of motion rows, against 1 of poses, among which the start is chosen; only looked
+        at where the reference has such rows.
+    variance_start
+        Whether weights by variance are among the starts too.
+    seed
+        Of the evolution and the folds.
+    """
+
+    iterations: int = 300
+    step: float = 0.02
+    parents: int = 6
+    offspring: int = 12
+    folds: int = 5
+    variant: Variant = Variant.PATH_LENGTH
+    shares: tuple[float, ...] = SHARES
+    stiffness: float = 0.02
+    motion_starts: tuple[float, ...] = (0.0, 1.0, MOTION_WEIGHT, 2 * MOTION_WEIGHT)
+    variance_start: bool = True
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        if self.iterations < 1 or self.folds < 0 or self.step <= 0:
+            raise ParameterError("iterations, folds and step must be positive")
+        if not 1 <= self.parents <= self.offspring or self.offspring < 2:
+            raise ParameterError("there must be at least two offspring, and no more parents")
+
+
+PAPER = TrainingParameters(stiffness=0.0, motion_starts=(1.0,), variance_start=False)
+"""Paper 3 to the letter, for references without motion."""
+
+
+@dataclass(frozen=True, eq=False)
+class Fold:
+    """What one fold of a cross-validation learnt, and how it does on those left out.
+
+    Parameters
+    ----------
+    quality
+        In numbers.
+    tested
+        Indices of the examples left out.
+    weights
+        (D,) learnt without them.
+    """
+
+    quality: FoldQuality
+    tested: tuple[int, ...]
+    weights: F32
+
+
+@dataclass(frozen=True, eq=False)
+class Training:
+    """Result of a training.
+
+    Parameters
+    ----------
+    weights
+        Learnt from all examples, with the quality of every fold.
+    folds
+        Of the cross-validation.
+    quality
+        Mean quality of all examples under `weights`: they were learnt from these.
+    """
+
+    weights: JointWeights
+    folds: tuple[Fold, ...]
+    quality: float
+
+
+def training(
+    reference: Reference,
+    segments: I32,
+    examples: Sequence[Example],
+    parameters: TrainingParameters = TrainingParameters(),
+) -> Generator[Progress, None, Training]:
+    """Learn weights from all examples, and say how well that does on other performers.
+
+    Parameters
+    ----------
+    reference
+        The performance that is aligned with.
+    segments
+        (R,) number of each reference frame's segment, see `weights_quality.segments_of`.
+    examples
+        Labelled performances, without the reference itself.
+
+    Yields
+    ------
+    Progress.
+
+    Raises
+    ------
+    MocapError
+        If there is no example.
+    """
+    if not examples:
+        raise MocapError("no labelled take to learn weights from")
+    folds = []
+    groups = folds_of(examples, parameters.folds, parameters.seed)
+    steps = len(groups) + 1
+    for i, tested in enumerate(groups):
+        kept = [k for k in range(len(examples)) if k not in tested]
+        learning = _evolving(reference, segments, [examples[k] for k in kept], parameters)
+        weights = yield from _part(learning, i / steps, 1 / steps, f"fold {i + 1}")
+        trials = Trials(reference, segments, [examples[k] for k in tested], parameters.shares)
+        left_out = _mean_quality(trials, np.stack([weights, np.ones_like(weights)]), parameters)
+        seen = Trials(reference, segments, [examples[k] for k in kept], parameters.shares)
+        trained = _mean_quality(seen, weights[None], parameters)
+        performers = tuple(dict.fromkeys(examples[k].performer for k in tested))
+        found = FoldQuality(performers, float(trained[0]), float(left_out[0]), float(left_out[1]))
+        folds.append(Fold(found, tested, weights))
+    learning = _evolving(reference, segments, examples, parameters)
+    weights = yield from _part(learning, 1 - 1 / steps, 1 / steps, "all takes")
+    trials = Trials(reference, segments, examples, parameters.shares)
+    quality = float(_mean_quality(trials, weights[None], parameters)[0])
+    named = dict(zip(reference.names, map(float, weights), strict=True))
+    learnt = JointWeights(named, reference.name, tuple(fold.quality for fold in folds))
+    return Training(learnt, tuple(folds), quality)
+
+
+def evolved(
+    reference: Reference,
+    segments: I32,
+    examples: Sequence[Example],
+    parameters: TrainingParameters = TrainingParameters(),
+) -> Generator[Progress, None, F32]:
+    """Learn weights (D,) with a mean of 1 from examples, without cross-validation."""
+    return (yield from _evolving(reference, segments, examples, parameters))
+
+
+def folds_of(examples: Sequence[Example], folds: int, seed: int) -> list[tuple[int, ...]]:
+    """Deal the performers out to folds; each fold's examples are all of its performers'.
+
+    With one performer, each take counts as a performer of its own; consecutive takes, which are
+    most alike, stay in one fold then.
+    """
+    performers = [example.performer for example in examples]
+    several = len(set(performers)) > 1
+    if not several:
+        performers = [str(i) for i in range(len(examples))]
+    different = list(dict.fromkeys(performers))
+    count = min(folds, len(different))
+    if count < 2:
+        return []
+    order = np.arange(len(different))
+    if several:
+        order = np.random.default_rng(seed).permutation(order)
+    fold = {different[k]: i * count // len(order) for i, k in enumerate(order)}
+    return [
+        tuple(k for k, performer in enumerate(performers) if fold[performer] == i)
+        for i in range(count)
+    ]
+
+
+def _evolving(
+    reference: Reference,
+    segments: I32,
+    examples: Sequence[Example],
+    parameters: TrainingParameters,
+) -> Generator[Progress, None, F32]:
+    import cma
+
+    trials = Trials(reference, segments, examples, parameters.shares)
+    options = {
+        "popsize": parameters.offspring,
+        "CMA_mu": parameters.parents,
+        "maxiter": parameters.iterations,
+        "seed": parameters.seed + 1,
+        "verbose": -9,
+        # Quality is a staircase: to stand on a step for long is no reason to stop.
+        "tolfun": 0,
+        "tolfunhist": 0,
+        "tolflatfitness": parameters.iterations + 1,
+        "tolstagnation": parameters.iterations + 1,
+    }
+    # The threads of the pool already fill the cores.
+    with threadpool_limits(1, "blas"):
+        starts = _starts(reference, examples, parameters)
+        start = starts[int(np.argmax(_mean_quality(trials, starts, parameters)))]
+        strategy = cma.CMAEvolutionStrategy(start, parameters.step, options)
+        while not strategy.stop():
+            yield Progress(strategy.countiter / parameters.iterations, "evolving")
+            asked = np.array(strategy.ask())
+            weights = np.maximum(asked, 0.0)
+            quality = _mean_quality(trials, weights, parameters)
+            price = parameters.stiffness * np.mean((weights - start) ** 2, axis=1)
+            strategy.tell(list(asked), list(1.0 - quality + price))
+    return _used(strategy.result.xfavorite)
+
+
+def _starts(
+    reference: Reference, examples: Sequence[Example], parameters: TrainingParameters
+) -> F32:
+    """(n, N) sets of weights where the evolution may begin, each with a mean of 1."""
+    poses = len(reference.features.names)
+    sets = [np.ones(len(reference.names), np.float32)]
+    if parameters.variance_start:
+        rows = [example.rows for example in examples]
+        sets.append(variance_weights(rows, reference.directions))
+    if reference.motion:
+        sets = [
+            np.concatenate([one[:poses], factor * one[poses:]])
+            for one in sets
+            for factor in parameters.motion_starts
+        ]
+    return np.array([_used(one) for one in sets])
+
+
+def _used(weights: F64 | F32) -> F32:
+    """Weights at least 0 with a mean of 1: neither sign nor scale means anything to a path."""
+    positive = np.maximum(np.asarray(weights), 0.0)
+    mean = positive.mean()
+    return np.asarray(positive / mean if mean > 0 else np.ones_like(positive), dtype=np.float32)
+
+
+def _mean_quality(trials: Trials, weights: F32, parameters: TrainingParameters) -> F64:
+    """(P,) mean over examples and shares."""
+    qualities = trials.qualities(weights, parameters.variant)
+    return np.asarray(qualities.mean(axis=(0, 2)))
+
+
+def _part(
+    work: Generator[Progress, None, F32], low: float, size: float, what: str
+) -> Generator[Progress, None, F32]:
+    while True:
+        try:
+            progress = next(work)
+        except StopIteration as stop:
+            result: F32 = stop.value
+            return result
+        yield Progress(low + size * progress.done, what)
