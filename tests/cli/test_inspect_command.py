@@ -134,3 +134,12 @@ def test_the_user_decides_what_was_guessed(mocapstudio, figure, tmp_path: Path) 
     done = mocapstudio("inspect", path, "--up", "z", "--forward", "z")
     assert done.returncode == 2
     assert done.stderr == "error: forward z is along the up axis z\n"
+
+
+@pytest.mark.parametrize("command", ["inspect", "convert", "detect", "clean", "review"])
+def test_every_command_that_reads_takes_has_the_readers_options(mocapstudio, command: str) -> None:
+    shown = mocapstudio(command, "--help", COLUMNS="200").stdout
+    for option in ("--fps", "--unit", "--up", "--forward", "--angles", "--root-offset"):
+        assert option in shown
+    for option in ("--t-pose", "--lenient", "--joint-map"):
+        assert option in shown

@@ -339,3 +339,19 @@ def test_inputs_are_not_overwritten(take: Take, tmp_path: Path) -> None:
 def test_unknown_suffixes_cannot_be_written(take: Take, tmp_path: Path) -> None:
     with pytest.raises(FileError, match=r"\.bvh"):
         formats.write(take, tmp_path / "out.xyz")
+
+
+@pytest.mark.parametrize("forward", ["x", "-z"])
+def test_turned_to_another_forward_axis_it_is_written_back_as_it_was(
+    tmp_path: Path, forward
+) -> None:
+    source, target = tmp_path / "source.bvh", tmp_path / "target.bvh"
+    source.write_text(bvh(walk(frames=20)))
+    [plain], _ = formats.read(source, ReadOptions(up="y"))
+    [take], _ = formats.read(source, ReadOptions(up="y", forward=forward))
+    turn = Rotation.from_euler("y", -90 if forward == "x" else 180, degrees=True)
+    np.testing.assert_allclose(
+        take.translations[:, 0], turn.apply(plain.translations[:, 0]), atol=1e-12
+    )
+    formats.write(take, target)
+    assert target.read_bytes() == source.read_bytes()
