@@ -1,0 +1,213 @@
+"""Alignment against definitions and other libraries."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+
+import naive_alignment as naive
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mocapstudio.evaluation.kata_peers import dtaidistance, dtw_python
+from mocapstudio.motion.errors import ParameterError
+from mocapstudio.motion.progress import run
+from mocapstudio.similarity.alignment import kernels
+from mocapstudio.similarity.alignment.costs import PoseDistances, ReliableDistances
+from mocapstudio.similarity.alignment.dtw import (
+    CLOSED,
+    WITHIN_SOURCE,
+    Alignment,
+    Ends,
+    accumulating,
+    align,
+    align_in_band,
+)
+from mocapstudio.similarity.alignment.frugal import align_frugally
+
+ENDS = [
+    CLOSED,
+    WITHIN_SOURCE,
+    Ends("source", None),
+    Ends(None, "source"),
+    Ends("reference", "reference"),
+    Ends("reference", "source"),
+    Ends("source", "reference"),
+]
+sizes = st.tuples(st.integers(1, 40), st.integers(1, 40), st.integers(1, 7), st.integers(0, 999))
+
+
+def wander(frames: int, dims: int, seed: int) -> np.ndarray:
+    steps = np.random.default_rng(seed).normal(size=(frames, dims))
+    return np.cumsum(steps, axis=0).astype(np.float32)
+
+
+def pair(size: tuple[int, int, int, int]) -> tuple[np.ndarray, np.ndarray]:
+    rows, columns, dims, seed = size
+    return wander(rows, dims, seed), wander(columns, dims, seed + 1000)
+
+
+def check_path(found: Alignment, shape: tuple[int, int], ends: Ends) -> None:
+    steps = np.diff(found.path, axis=0)
+    assert ((steps == 0) | (steps == 1)).all()
+    assert (steps.sum(axis=1) > 0).all()
+    first, last = found.path[0], found.path[-1]
+    assert first[1] == 0 or ends.begin == "source"
+    assert first[0] == 0 or ends.begin == "reference"
+    assert last[1] == shape[1] - 1 or ends.end == "source"
+    assert last[0] == shape[0] - 1 or ends.end == "reference"
+
+
+@pytest.mark.parametrize(("rows", "columns"), [(1, 1), (1, 5), (4, 1), (3, 5), (5, 5)])
+def test_the_oracle_knows_every_path(rows: int, columns: int) -> None:
+    costs = np.random.default_rng(rows * columns).uniform(size=(rows, columns))
+    every = [sum(costs[i, j] for i, j in path) for path in naive.paths(rows, columns)]
+    assert naive.cheapest(costs) == pytest.approx(min(every))
+
+
+@settings(max_examples=40)
+@given(sizes)
+def test_distances_are_those_of_the_definition(size: tuple[int, int, int, int]) -> None:
+    reference, source = pair(size)
+    out = np.empty((len(reference), len(source)), np.float32)
+    PoseDistances(reference, source).fill(0, len(reference), out)
+    np.testing.assert_allclose(out, naive.distances(reference, source), rtol=1e-5, atol=1e-5)
+
+
+def test_distances_over_several_chunks_and_blocks_of_rows() -> None:
+    reference, source = wander(150, 9, 1), wander(2 * kernels.CHUNK + 17, 9, 2)
+    out = np.empty((150, len(source)), np.float32)
+    PoseDistances(reference, source).fill(0, 150, out)
+    np.testing.assert_allclose(out, naive.distances(reference, source), rtol=1e-5)
+
+
+def test_equal_poses_cost_nothing() -> None:
+    poses = wander(50, 6, 3) + 100
+    found = align(PoseDistances(poses, poses))
+    assert found.cost == 0.0
+    np.testing.assert_array_equal(found.path[:, 0], found.path[:, 1])
+
+
+@settings(max_examples=40)
+@given(sizes, st.sampled_from(ENDS))
+def test_the_accumulated_matrix_is_algorithm_1(size: tuple[int, int, int, int], ends: Ends) -> None:
+    reference, source = pair(size)
+    found = run(accumulating(PoseDistances(reference, source), ends))
+    costs = naive.distances(reference, source)
+    expected = naive.accumulated(costs, ends.begin == "reference", ends.begin == "source")
+    np.testing.assert_allclose(found, expected, rtol=2e-5, atol=1e-4)
+
+
+@settings(max_examples=60)
+@given(sizes, st.sampled_from(ENDS))
+def test_every_way_finds_a_cheapest_path(size: tuple[int, int, int, int], ends: Ends) -> None:
+    costs = PoseDistances(*pair(size))
+    expected = naive.cheapest(naive.distances(*pair(size)), ends.begin, ends.end)
+    for found in (
+        align(costs, ends),
+        align_frugally(costs, ends, cells=30),
+        align_in_band(costs, 100, ends),
+    ):
+        check_path(found, costs.shape, ends)
+        assert found.cost == pytest.approx(expected, rel=1e-4, abs=1e-4)
+
+
+@settings(max_examples=40)
+@given(sizes, st.integers(0, 12))
+def test_a_band_forbids_what_lies_outside(size: tuple[int, int, int, int], band: int) -> None:
+    rows, columns = size[0], size[1]
+    costs = PoseDistances(*pair(size))
+    slope = (columns - 1) / max(rows - 1, 1)
+    half = max(band, int(np.ceil(slope)))
+    off = np.arange(columns)[None] - np.round(np.arange(rows) * slope)[:, None]
+    expected = naive.cheapest(naive.distances(*pair(size)), allowed=np.abs(off) <= half)
+    if not np.isfinite(expected):
+        with pytest.raises(ParameterError, match="band"):
+            align_in_band(costs, band)
+        return
+    found = align_in_band(costs, band)
+    check_path(found, costs.shape, CLOSED)
+    assert found.cost == pytest.approx(expected, rel=1e-4, abs=1e-4)
+
+
+def test_a_subsequence_is_found_where_it_was_hidden() -> None:
+    stream = wander(400, 5, 4)
+    found = align(PoseDistances(stream[123:171], stream), WITHIN_SOURCE)
+    assert found.path[0].tolist() == [0, 123]
+    assert found.path[-1].tolist() == [47, 170]
+    assert found.cost == 0.0
+
+
+def test_the_frugal_way_holds_only_the_cells_it_may(monkeypatch: pytest.MonkeyPatch) -> None:
+    largest = 0
+
+    class Watched(PoseDistances):
+        def fill(self, start: int, end: int, out: np.ndarray) -> None:
+            nonlocal largest
+            base = out if out.base is None else out.base
+            largest = max(largest, base.size)
+            super().fill(start, end, out)
+
+        def part(self, rows: slice, columns: slice) -> Watched:
+            return Watched(self.reference[rows], self.source[columns])
+
+    costs = Watched(wander(700, 4, 5), wander(900, 4, 6))
+    found = align_frugally(costs, cells=20_000)
+    assert found.cost == pytest.approx(align(PoseDistances(costs.reference, costs.source)).cost)
+    assert largest <= 128 * 900 < 700 * 900 / 4
+
+
+@settings(max_examples=30)
+@given(sizes)
+def test_unreliable_rows_do_not_count(size: tuple[int, int, int, int]) -> None:
+    rows, columns, count, seed = size
+    rng = np.random.default_rng(seed)
+    one, other = rng.normal(size=(rows, count, 3)), rng.normal(size=(columns, count, 3))
+    a, b = (rng.random((n, count)) > 0.3 for n in (rows, columns))
+    out = np.empty((rows, columns), np.float32)
+    costs = ReliableDistances(one, other, a.astype(float), b.astype(float))
+    costs.fill(0, rows, out)
+    both = a[:, None] & b[None]
+    squares = ((one[:, None] - other[None]) ** 2).sum(axis=3)
+    known = both.sum(axis=2)
+    seen = known > 0
+    expected = np.sqrt((squares * both).sum(axis=2) * count / np.maximum(known, 1))
+    np.testing.assert_allclose(out[seen], expected[seen], rtol=1e-4, atol=1e-4)
+    path = np.argwhere(seen).astype(np.int32)
+    if len(path):
+        np.testing.assert_allclose(costs.pairs(path), out[seen], rtol=1e-4, atol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("reference", "source", "what"),
+    [
+        (np.zeros((0, 3)), np.zeros((4, 3)), "empty"),
+        (np.zeros((4, 3)), np.zeros((4, 2)), "dimension"),
+    ],
+)
+def test_what_cannot_be_aligned_is_refused(
+    reference: np.ndarray, source: np.ndarray, what: str
+) -> None:
+    with pytest.raises(ParameterError, match=what):
+        PoseDistances(reference, source)
+
+
+def test_cost_and_path_are_those_of_dtw_python() -> None:
+    if not find_spec("dtw"):
+        pytest.skip("dtw is not installed (pip install mocapstudio[peers])")
+    reference, source = wander(90, 12, 7), wander(120, 12, 8)
+    found = align(PoseDistances(reference, source))
+    cost, path = dtw_python(reference.astype(float), source.astype(float))
+    assert found.cost == pytest.approx(cost, rel=1e-5)
+    np.testing.assert_array_equal(found.path, path)
+
+
+def test_squared_costs_are_those_of_dtaidistance() -> None:
+    if not find_spec("dtaidistance"):
+        pytest.skip("dtaidistance is not installed (pip install mocapstudio[peers])")
+    reference, source = wander(60, 4, 11).astype(float), wander(80, 4, 12).astype(float)
+    squares = (naive.distances(reference, source) ** 2).astype(np.float32)
+    kernels.accumulate(squares, np.full(80, np.inf, np.float32), 0.0, np.inf)
+    cost, _ = dtaidistance(reference, source)
+    assert np.sqrt(squares[-1, -1]) == pytest.approx(cost, rel=1e-5)
