@@ -14,6 +14,8 @@ from mocapstudio.formats.bvh_write import write_bvh
 from mocapstudio.formats.c3d_layout import looks_like_c3d
 from mocapstudio.formats.c3d_read import read_c3d
 from mocapstudio.formats.c3d_write import write_c3d
+from mocapstudio.formats.fbx_read import looks_like_fbx, read_fbx
+from mocapstudio.formats.fbx_write import write_fbx
 from mocapstudio.formats.gltf_write import looks_like_gltf, write_gltf
 from mocapstudio.formats.options import ReadOptions, WriteOptions
 from mocapstudio.formats.report import ImportReport
@@ -92,6 +94,7 @@ FORMATS = (
         common=True,
     ),
     Format("c3d", (".c3d",), looks_like_c3d, read_c3d, write_markers=write_c3d),
+    Format("fbx", (".fbx",), looks_like_fbx, read_fbx, write_fbx),
     Format("glb", (".glb",), looks_like_gltf, None, write_gltf(binary=True)),
     Format("gltf", (".gltf",), looks_like_gltf, None, write_gltf(binary=False)),
 )
