@@ -118,7 +118,7 @@ def test_mutations_are_read_or_refused(suffix: str) -> None:
         text = mutated(BASES[suffix], chance)
         rate = Fraction(50) if chance.random() < 0.2 else None
         options = formats.ReadOptions(lenient=chance.random() < 0.5, fps=rate)
-        began = time.perf_counter()
+        began = time.process_time()
         try:
             [take], _ = form.read(path, text, options)
         except MocapError as refused:
@@ -126,7 +126,7 @@ def test_mutations_are_read_or_refused(suffix: str) -> None:
             assert "\n" not in str(refused), f"seed {seed}"
             continue
         finally:
-            assert time.perf_counter() - began < LONGEST, f"seed {seed}"
+            assert time.process_time() - began < LONGEST, f"seed {seed}"
         read += 1
         assert isinstance(take, MarkerTake), f"seed {seed}"
         seen = ~take.missing
