@@ -29,7 +29,7 @@ def test_the_content_tells_where_the_suffix_does_not(tmp_path: Path, name: str) 
 
 
 def test_unknown_formats_are_told_what_is_known(tmp_path: Path) -> None:
-    path = tmp_path / "scene.fbx"
-    path.write_bytes(b"Kaydara FBX Binary  \x00")
-    with pytest.raises(FileError, match=r"'\.fbx'.*\.bvh"):
+    path = tmp_path / "scene.max"
+    path.write_bytes(b"\xd0\xcf\x11\xe0 neither text nor motion")
+    with pytest.raises(FileError, match=r"'\.max'.*\.bvh"):
         formats.read(path)
