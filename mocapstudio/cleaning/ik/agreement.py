@@ -27,7 +27,9 @@ _ALONG = 0.02
 """Share of a hold that remains along the line to a point that stands longer."""
 _APART = 0.005
 """Metres: points of one foot nearer than this are one point."""
-_TURNED = np.cos(np.deg2rad(35.0))
+_TURNED, _SHARE = np.cos(np.deg2rad(35.0)), 10.0
+"""A foot turns where this percentage of frames is farther from its usual direction; toes that flip
+for a few frames do not."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,9 +116,9 @@ def _turns(pair: _Pair) -> bool:
     if clear.sum() < 2:
         return False
     directions = flat[clear] / lengths[clear, None]
-    usual = directions.mean(axis=0)
+    usual = np.median(directions, axis=0)
     usual /= max(float(np.linalg.norm(usual)), 1e-9)
-    return bool((directions @ usual).min() < _TURNED)
+    return bool(np.percentile(directions @ usual, _SHARE) < _TURNED)
 
 
 def _placed(laid: Sequence[Hold], pairs: Sequence[_Pair]) -> list[Hold]:
@@ -128,7 +130,7 @@ def _placed(laid: Sequence[Hold], pairs: Sequence[_Pair]) -> list[Hold]:
     right = weights[:, None] * np.array([h.target[0] for h in laid])
     for pair in pairs:
         strength = _TOGETHER * len(pair.frames)
-        apart = strength * pair.ways.mean(axis=0)
+        apart = strength * np.median(pair.ways, axis=0)
         a, b = pair.first, pair.second
         system[[a, b], [a, b]] += strength
         system[[a, b], [b, a]] -= strength

@@ -21,7 +21,7 @@ from mocapstudio.cleaning.ik.objectives.key_pose import KeyPose
 from mocapstudio.cleaning.ik.objectives.orientation import Orientation
 from mocapstudio.cleaning.ik.objectives.over_time import KeepPose
 from mocapstudio.cleaning.ik.objectives.position import PointAtTarget
-from mocapstudio.cleaning.ik.objectives.rows import Objective, TimeObjective
+from mocapstudio.cleaning.ik.objectives.rows import Objective
 from mocapstudio.cleaning.ik.posed import Posed, Window, window
 from mocapstudio.cleaning.ik.ranges import JointRanges, joint_ranges
 from mocapstudio.cleaning.ik.solve import Problem, solve
@@ -156,9 +156,8 @@ class Drag:
         unknowns = wanted
         if self._pins:
             key = KeyPose(at, self._unknowns[0], _KEY)
-            ease = smooth(self._take, self._free, (start, end), seconds)
-            over_time: list[TimeObjective] = [keep, *ease[1:]]
-            problem = Problem(view, self._free, [key, *wishes], over_time)
+            _, ease = smooth(self._take, self._free, (start, end), seconds)
+            problem = Problem(view, self._free, [key, *wishes], [keep, ease])
             unknowns = solve(problem, wanted, _RELEASE_STEPS).unknowns
             unknowns[at] = self._unknowns[0]
         departure = Departure((start, end), problem, unknowns)

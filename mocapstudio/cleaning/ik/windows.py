@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from mocapstudio.cleaning.ik.limits import RangeLimit
 from mocapstudio.cleaning.ik.objectives.orientation import Orientation
 from mocapstudio.cleaning.ik.objectives.over_time import KeepPose, Smoothness
 from mocapstudio.cleaning.ik.objectives.position import PointAtTarget
-from mocapstudio.cleaning.ik.objectives.rows import Objective, TimeObjective
+from mocapstudio.cleaning.ik.objectives.rows import Objective
 from mocapstudio.cleaning.ik.posed import Posed, window
 from mocapstudio.cleaning.ik.ranges import JointRanges
 from mocapstudio.cleaning.ik.solve import Problem
@@ -21,11 +21,10 @@ from mocapstudio.cleaning.ik.targets import Hold
 from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.skeleton import Skeleton
 from mocapstudio.motion.take import Take
-from mocapstudio.motion.topology import topology
 
 Array = NDArray[np.float64]
 
-CONTACT_WEIGHTS = (2e3, 5e4)
+CONTACT_WEIGHTS = (2e3, 4e5)
 """Per metre, growing: at first contacts on one foot find places that agree, at last they hold."""
 _LIMIT_WEIGHT = 30.0
 _TURN_WEIGHT = 2.0
@@ -33,6 +32,7 @@ _TURN_WEIGHT = 2.0
 _SMOOTHNESS = 2.5
 """Per metre: that of a joint 0.4 m from the end of its limb, 1 per radian."""
 _LEAST_LEVER = 0.05
+_STEADY = 0.15
 _FADES = 3.3
 """The easing in lengths over which a smooth departure fades by e."""
 _ORDER = 2
@@ -89,7 +89,7 @@ def problem(
         for j in ends
     ]
     wishes += [range_limit(take, j, span, ranges, _LIMIT_WEIGHT) for j in free.joints]
-    return Problem(view, free, wishes, smooth(take, free, span, easing, holds))
+    return Problem(view, free, wishes, smooth(take, free, span, easing))
 
 
 def range_limit(
@@ -104,42 +104,19 @@ def range_limit(
 
 
 def smooth(
-    take: Take, free: Freedom, span: tuple[int, int], easing: float, holds: Sequence[Hold] = ()
-) -> tuple[TimeObjective, ...]:
-    """Keep the pose, and ease into and out of every departure within about `easing` seconds.
-
-    A limb in contact stands as still as its point has to, whatever detail that takes away.
-    """
+    take: Take, free: Freedom, span: tuple[int, int], easing: float
+) -> tuple[KeepPose, Smoothness]:
+    """Keep the pose, and ease into and out of every departure within about `easing` seconds."""
     start, end = span
     low, high = take.span
     length = max(1.0, easing * float(take.rate) / _FADES)
-    weights = levers(take.skeleton, free) * (_SMOOTHNESS * length**_ORDER)
+    # What is stiff has to fade as slowly as what is soft, or it would be used in bursts.
+    steady = np.maximum(_SMOOTHNESS * levers(take.skeleton, free), _STEADY * free.stiffness)
     joins = start not in (0, low), end not in (take.frames, high)
-    wishes: list[TimeObjective] = [KeepPose(end - start, free.stiffness)]
-    for columns, eased in _contact_frames(take, free, span, holds):
-        mine = np.where(columns, weights, 0.0)
-        wishes.append(Smoothness(end - start, mine, _ORDER, *joins, eased))
-    return tuple(wishes)
-
-
-def _contact_frames(
-    take: Take, free: Freedom, span: tuple[int, int], holds: Sequence[Hold]
-) -> Iterator[tuple[NDArray[np.bool_], NDArray[np.bool_] | None]]:
-    """Unknowns (n,) of each limb with the frames in which it is in contact; then all others."""
-    parts = topology(take.skeleton)
-    others = np.ones(free.size, dtype=bool)
-    limbs = {parts.limb_of(h.joint).joints for h in holds if h.joint not in parts.above_hips}
-    for joints in sorted(limbs):
-        mine = np.zeros(free.size, dtype=bool)
-        for joint in set(joints) & set(free.joints):
-            mine[free.columns(joint)] = True
-        eased = np.zeros(span[1] - span[0], dtype=bool)
-        for hold in holds:
-            if hold.joint in joints:
-                eased[hold.frames - span[0]] = True
-        others &= ~mine
-        yield mine, eased
-    yield others, None
+    return (
+        KeepPose(end - start, free.stiffness),
+        Smoothness(end - start, steady * length**_ORDER, _ORDER, *joins),
+    )
 
 
 def levers(skeleton: Skeleton, free: Freedom) -> Array:

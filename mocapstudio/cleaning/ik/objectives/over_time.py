@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-_WITHIN = 0.1
-
 
 @dataclass(frozen=True, eq=False)
 class KeepPose:
@@ -55,9 +53,6 @@ class Smoothness:
     joins_before, joins_after
         Whether frames just outside the window stay as they were, so that the departure has to fade
         out towards them; otherwise that end is free.
-    eased
-        (F,) frames, such as those in contact, among which detail is there to be taken away: what
-        lies wholly within them counts little; None for none.
     """
 
     frames: int
@@ -65,7 +60,6 @@ class Smoothness:
     order: int
     joins_before: bool = True
     joins_after: bool = True
-    eased: NDArray[np.bool_] | None = None
     reference: None = None
 
     @cached_property
@@ -78,7 +72,4 @@ class Smoothness:
             counts[:k] = 0.0
         if not self.joins_after:
             counts[self.frames :] = 0.0
-        if self.eased is not None:
-            within = np.convolve(self.eased, np.ones(k + 1)) > k + 0.5
-            counts[within] *= _WITHIN
         return signs[:, None] * counts
