@@ -1,7 +1,7 @@
 """The table of commands, and what happens around each of them.
 
-A command is a function of the same name in a module of the same name, which is imported only when
-that command is asked for: `detect` must not pay for the desk.
+A command is a function of the same name in a module of the same name (underscores for hyphens),
+which is imported only when that command is asked for: `detect` must not pay for the desk.
 """
 
 from __future__ import annotations
@@ -27,6 +27,8 @@ COMMANDS = {
     "contacts": "Find or read contacts, measure foot skate, remove it.",
     "convert": "Write a take in another format.",
     "compare": "Compare performances with a reference: early, late, different.",
+    "align": "Align a stream with a reference, frame by frame.",
+    "train-weights": "Learn how much each joint counts in aligning.",
     "export": "Write what was decided in a session, without the desk.",
     "report": "Write a session's report.",
     "evaluate": "Measure detection, repair and speed on takes with known errors.",
@@ -36,7 +38,8 @@ COMMANDS = {
 
 def load(name: str) -> Callable[..., Any]:
     """Import the function behind a command."""
-    function: Callable[..., Any] = getattr(import_module(f"mocapstudio.cli.{name}"), name)
+    module = name.replace("-", "_")
+    function: Callable[..., Any] = getattr(import_module(f"mocapstudio.cli.{module}"), module)
     return function
 
 

@@ -63,10 +63,13 @@ class JointRotations:
         D joints.
     root
         Row of the hips, or None where they are not compared.
+    above
+        The joints above the hips, nearest first: they move the world, not the body.
     """
 
     names: tuple[str, ...]
     root: int | None
+    above: tuple[str, ...] = ()
     directions: bool = False
 
     @classmethod
@@ -79,8 +82,11 @@ class JointRotations:
             If a take lacks half of them or more.
         """
         names = comparable_joints(reference, others)
-        hips = reference.skeleton.names[topology(reference.skeleton).hips]
-        return cls(names, names.index(hips) if hips in names else None)
+        skeleton = reference.skeleton
+        hips = topology(skeleton).hips
+        above = tuple(skeleton.names[joint] for joint in skeleton.ancestors(hips))
+        name = skeleton.names[hips]
+        return cls(names, names.index(name) if name in names else None, above)
 
     def of(self, take: Recording) -> F32:
         """(F, D, 4) quaternions; of the hips in the world. See `Features.of`."""

@@ -153,7 +153,7 @@ def training(
         learning = _evolving(reference, segments, [examples[k] for k in kept], parameters)
         weights = yield from _part(learning, i / steps, 1 / steps, f"fold {i + 1}")
         trials = Trials(reference, segments, [examples[k] for k in tested], parameters.shares)
-        left_out = _mean_quality(trials, np.stack([weights, np.ones_like(weights)]), parameters)
+        left_out = _mean_quality(trials, np.stack([weights, reference.plain_weights]), parameters)
         seen = Trials(reference, segments, [examples[k] for k in kept], parameters.shares)
         trained = _mean_quality(seen, weights[None], parameters)
         performers = tuple(dict.fromkeys(examples[k].performer for k in tested))

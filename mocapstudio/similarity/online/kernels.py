@@ -21,6 +21,7 @@ DIAGONAL, STAY, SKIP = 0, 1, 2
 
 _HALF = np.float32(0.5)
 _ONE = np.float32(1.0)
+_ZERO = np.float32(0.0)
 
 
 @nb.njit(nogil=True, cache=True, fastmath=True)
@@ -42,7 +43,7 @@ def pose_costs(pose: F32, reference: F32, weights: F32, directions: int, out: F3
         (R,), overwritten.
     """
     frames = reference.shape[2]
-    out[:] = np.float32(0.0)
+    out[:] = _ZERO
     for d in range(reference.shape[0]):
         x, y, z, w = pose[d, 0], pose[d, 1], pose[d, 2], pose[d, 3]
         weight = weights[d]
@@ -50,11 +51,11 @@ def pose_costs(pose: F32, reference: F32, weights: F32, directions: int, out: F3
         if d < directions:
             for j in range(frames):
                 dot = x * px[j] + y * py[j] + z * pz[j]
-                out[j] += weight * _HALF * (_ONE - dot)
+                out[j] += weight * _HALF * max(_ONE - dot, _ZERO)
         else:
             for j in range(frames):
                 dot = x * px[j] + y * py[j] + z * pz[j] + w * pw[j]
-                out[j] += weight * (_ONE - abs(dot))
+                out[j] += weight * max(_ONE - abs(dot), _ZERO)
 
 
 @nb.njit(nogil=True, cache=True)
@@ -223,11 +224,12 @@ def row_distances(poses: F32, reference: F32, directions: int, out: F32) -> None
             row = out[d, i]
             if d < directions:
                 for j in range(px.shape[0]):
-                    row[j] = _HALF * (_ONE - (x * px[j] + y * py[j] + z * pz[j]))
+                    dot = x * px[j] + y * py[j] + z * pz[j]
+                    row[j] = _HALF * max(_ONE - dot, _ZERO)
             else:
                 for j in range(px.shape[0]):
                     dot = x * px[j] + y * py[j] + z * pz[j] + w * pw[j]
-                    row[j] = _ONE - abs(dot)
+                    row[j] = max(_ONE - abs(dot), _ZERO)
 
 
 @nb.njit(nogil=True, cache=True)
