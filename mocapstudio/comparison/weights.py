@@ -23,7 +23,8 @@ class FoldQuality:
         Whose takes were left out of training and then aligned.
     training, test, unweighted
         Mean quality of the takes trained on, of those left out, and of the latter with the
-        weights of a reference for which none were learnt, each averaged over the shares of the movement seen.
+        weights of a reference for which none were learnt, each averaged over the shares of the
+        movement seen.
     """
 
     performers: tuple[str, ...]
