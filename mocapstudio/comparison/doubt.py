@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mocapstudio.comparison.pose_alignment import PoseAlignment
-from mocapstudio.similarity.alignment.costs import Costs
+from mocapstudio.similarity.alignment.costs import Costs, KnownCosts
 from mocapstudio.similarity.alignment.dtw import Path, align
 
 _COARSE = 300
@@ -64,9 +64,9 @@ def doubt(aligned: PoseAlignment, reference_seconds: float, source_seconds: floa
 
 def _against_chance(costs: Costs) -> tuple[float, float]:
     rows, columns = (np.arange(0, n, max(1, -(-n // _COARSE))) for n in costs.shape)
-    thin = costs.part(rows, columns)
-    matrix = np.empty(thin.shape, np.float32)
-    thin.fill(0, len(matrix), matrix)
+    matrix = np.empty((len(rows), len(columns)), np.float32)
+    costs.part(rows, columns).fill(0, len(matrix), matrix)
+    thin = KnownCosts(matrix)
     anywhere = float(matrix.mean())
     found = align(thin).mean_cost
     if anywhere < 1e-6:

@@ -19,7 +19,7 @@ from mocapstudio.comparison.matching import Match, match
 from mocapstudio.comparison.model import Comparison
 from mocapstudio.comparison.normalisation import Poses, normalised
 from mocapstudio.comparison.parameters import ComparisonParameters
-from mocapstudio.comparison.performance import Performance
+from mocapstudio.comparison.performance import Performance, framed_alike
 from mocapstudio.comparison.pose_alignment import align_poses
 from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.motion.progress import Progress
@@ -61,8 +61,9 @@ def compare(
     """
     chosen = parameters or ComparisonParameters()
     yield Progress(0.0, "reading poses")
-    one = performance_of(reference, reference_unreliable)
-    other = performance_of(source, source_unreliable)
+    one, other = framed_alike(
+        performance_of(reference, reference_unreliable), performance_of(source, source_unreliable)
+    )
     matched = match(one, other, names)
     ours = normalised(one, matched.reference, chosen.features)
     theirs = normalised(other, matched.source, chosen.features)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from mocapstudio.comparison import marker_names
 from mocapstudio.comparison.performance import BodyFrame, Performance, Row, frame_along
+from mocapstudio.motion.completion import complete
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.markers import MarkerTake
 
@@ -82,7 +83,9 @@ def performance_of_markers(
 
 
 def completed(take: MarkerTake) -> tuple[Array, NDArray[np.bool_]]:
-    """Fill gaps in time, and tell which positions lie in gaps too long to be trusted.
+    """Complete what is missing, and tell which positions lie in gaps too long to be trusted.
+
+    What nothing of the body tells, such as all markers missing at once, is interpolated.
 
     Returns
     -------
@@ -91,7 +94,10 @@ def completed(take: MarkerTake) -> tuple[Array, NDArray[np.bool_]]:
     doubtful
         (F, M).
     """
-    positions, doubtful = take.positions.copy(), np.zeros(take.missing.shape, bool)
+    doubtful = np.zeros(take.missing.shape, bool)
+    if not take.missing.any():
+        return take.positions, doubtful
+    positions = complete(take).positions.copy()
     longest = _TRUSTED_GAP * float(take.rate)
     frames = np.arange(take.frames)
     for i in range(len(take.labels)):
@@ -99,11 +105,14 @@ def completed(take: MarkerTake) -> tuple[Array, NDArray[np.bool_]]:
         known = np.flatnonzero(~gone)
         if not gone.any() or not len(known):
             continue
+        still = np.isnan(positions[:, i]).any(axis=1)
         for axis in range(3):
-            positions[gone, i, axis] = np.interp(frames[gone], known, positions[known, i, axis])
+            positions[still, i, axis] = np.interp(
+                frames[still], known, take.positions[known, i, axis]
+            )
         edges = np.concatenate([[-1], known, [take.frames]])
-        length = np.diff(edges)[np.searchsorted(edges, frames) - 1]
-        doubtful[:, i] = gone & (length - 1 > longest)
+        length = np.diff(edges)[np.searchsorted(edges, frames) - 1] - 1
+        doubtful[:, i] = gone & (length > longest)
     return positions, doubtful
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
@@ -97,6 +97,29 @@ class Performance:
     def own(self, rows: Sequence[int]) -> list[str]:
         """Names of rows."""
         return [self.rows[i].name for i in rows]
+
+
+def framed_alike(one: Performance, other: Performance) -> tuple[Performance, Performance]:
+    """Give joints and markers the same frame of the head where they are compared with each other.
+
+    Joints know how the chest is turned, markers do not: there neck, head and shoulders tell, in
+    both. Performances of one kind, or without such rows, keep their frames.
+    """
+    if (one.rotations is None) == (other.rotations is None):
+        return one, other
+    frames = _frame_by_roles(one), _frame_by_roles(other)
+    if frames[0] is None or frames[1] is None:
+        return one, other
+    return replace(one, head=frames[0]), replace(other, head=frames[1])
+
+
+def _frame_by_roles(performance: Performance) -> BodyFrame | None:
+    at = {row.role: i for i, row in enumerate(performance.rows)}
+    wanted = ("neck", "head", "left shoulder", "right shoulder")
+    if not all(role in at for role in wanted):
+        return None
+    neck, head, left, right = (performance.positions[:, at[role]] for role in wanted)
+    return frame_along(neck, head - neck, -np.cross(left - right, head - neck))
 
 
 def frame_along(origin: Array, z: Array, towards: Array) -> BodyFrame:

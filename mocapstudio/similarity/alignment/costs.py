@@ -87,6 +87,36 @@ class PoseDistances:
         return PoseDistances(self.reference[rows], self.source[columns])
 
 
+class KnownCosts:
+    """Costs that were computed before.
+
+    Parameters
+    ----------
+    matrix
+        (R, S).
+    """
+
+    def __init__(self, matrix: F32) -> None:
+        self.matrix = matrix
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Frames of the reference and of the source."""
+        return self.matrix.shape[0], self.matrix.shape[1]
+
+    def fill(self, start: int, end: int, out: F32) -> None:
+        """Write the costs of reference frames [start, end) into `out` (end - start, S)."""
+        out[:] = self.matrix[start:end]
+
+    def pairs(self, path: NDArray[np.int32]) -> F32:
+        """(P,) costs of the pairs of a path (P, 2)."""
+        return np.asarray(self.matrix[path[:, 0], path[:, 1]])
+
+    def part(self, rows: Which, columns: Which) -> KnownCosts:
+        """Return the costs of some frames, in the order in which they are given."""
+        return KnownCosts(self.matrix[rows][:, columns])
+
+
 class ReliableDistances:
     """Distances over the rows that are reliable in both frames, scaled to all rows.
 
