@@ -6,6 +6,7 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Literal
 
@@ -13,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapstudio import formats
+from mocapstudio.evaluation.demo.body import Motion
 from mocapstudio.evaluation.demo.skeleton import BALL, HEEL, SIDES, demo_skeleton
 from mocapstudio.evaluation.demo.take import RATE, demo_motion
 from mocapstudio.motion import rotations as rot
@@ -132,16 +134,16 @@ def made(part: Part, seed: int) -> list[ContactCase]:
         Choose the takes; the same pair gives the same ones.
     """
     base = 1000 + 100 * seed + (50 if part == "test" else 0)
-    return [
-        _made(change, name, part, base + i) for i, (name, change) in enumerate(_CHANGES.items())
-    ]
+    return [made_case(name, part, base + i) for i, name in enumerate(KINDS)]
 
 
-def _made(change: Callable[[Take, int], Take], name: str, part: Part, seed: int) -> ContactCase:
-    motion = demo_motion(seed)
+def made_case(kind: str, part: Part, seed: int) -> ContactCase:
+    """Make one take with planted feet, `kind` one of `KINDS`."""
+    change = KINDS[kind]
+    motion = _walk(seed)
     frames = int(MADE_SECONDS * RATE)
     take = Take(
-        f"{name} {seed}",
+        f"{kind} {seed}",
         demo_skeleton(),
         motion.rotations[:frames],
         motion.root[:frames, None],
@@ -154,6 +156,11 @@ def _made(change: Callable[[Take, int], Take], name: str, part: Part, seed: int)
     )
     truth = {key: mask[at] for key, mask in truth.items()}
     return ContactCase(changed, part, truth, {key: np.ones(len(at), bool) for key in truth})
+
+
+@lru_cache(maxsize=1)
+def _walk(seed: int) -> Motion:
+    return demo_motion(seed)
 
 
 def _planted(take: Take, stance: Mapping[str, Mask]) -> dict[Key, Mask]:
@@ -218,7 +225,7 @@ def _sloping(take: Take, seed: int) -> Take:
     return take.with_motion(rotations, moved)
 
 
-_CHANGES: dict[str, Callable[[Take, int], Take]] = {
+KINDS: dict[str, Callable[[Take, int], Take]] = {
     "60 Hz": lambda take, seed: take,
     "24 Hz": _at_rate(24),
     "120 Hz": _at_rate(120),
@@ -227,3 +234,4 @@ _CHANGES: dict[str, Callable[[Take, int], Take]] = {
     "small": _small,
     "slope": _sloping,
 }
+"""What is done to made takes, by name."""

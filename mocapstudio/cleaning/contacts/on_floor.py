@@ -51,16 +51,16 @@ def on_floor(take: Take, points: Sequence[ContactPoint], positions: Array, pose:
     """
     rate, leg = float(take.rate), leg_length(take.skeleton)
     low, high = take.span
-    velocity = one_sided(smoothed(positions, rate), rate)
-    speed = np.linalg.norm(velocity, axis=2) / leg
-    probability = np.zeros(positions.shape[:2])
+    inside = positions[low:high]
+    velocity = one_sided(smoothed(inside, rate), rate)
+    speed, probability = np.zeros(positions.shape[:2]), np.zeros(positions.shape[:2])
+    speed[low:high] = np.linalg.norm(velocity, axis=2) / leg
     hands = {take.skeleton.names[hand.joint] for hand in extremities(take.skeleton, "arm")}
     feet = [i for i, p in enumerate(points) if p.joint not in hands and p.point != "palm"]
     if not feet:
         return OnFloor(probability, speed, None)
     hips = pose[0][low:high, topology(take.skeleton).hips]
     limbs = [_limb(take, points[i].joint) for i in feet]
-    inside = positions[low:high]
     floor = fit_floor(inside[:, feet], rate, leg, hips, limbs)
     # What is no foot is held against the plane alone: nobody knows how it would rest.
     height = inside[..., 1] - floor.at(inside)

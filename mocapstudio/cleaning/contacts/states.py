@@ -28,6 +28,8 @@ _MOST = 12.0
 """No single frame speaks louder than this."""
 _ANYWHERE = 0.07
 """Share of free points that are anywhere up to a leg above the floor."""
+_IDLE = 0.05
+"""Share of free points that are as slow as if they were in contact: feet held up, idle hands."""
 _SUNK_LEAST, _SUNK_MOST = 0.004, 0.04
 """Of `sunk`, in legs."""
 _OPEN = 0.5
@@ -62,6 +64,7 @@ class Emissions:
         """How much speed and height speak for contact, as log likelihood ratio."""
         slow = _gaussian(np.maximum(log_speed, self.contact), self.contact, self.contact_spread)
         fast = _gaussian(np.minimum(log_speed, self.free), self.free, self.free_spread)
+        fast = np.logaddexp(fast + np.log(1 - _IDLE), slow + np.log(_IDLE))
         low = -2.5 * np.log1p(np.where(height > 0, height, 0.5 * height) ** 2 / (4 * self.sunk**2))
         low = low - np.log(self.sunk)
         raised = np.exp(-np.maximum(height, 0.0) / self.raised) * (1 - _ANYWHERE) / self.raised
