@@ -102,6 +102,9 @@ class MainWindow(QMainWindow):
             event.ignore()
             self.files.save_first(self.close_without_asking)
             return
+        if not self._sure and self.switching.hold_back(self.close_without_asking):
+            event.ignore()
+            return
         self.bridge.set_ui(playing=False)
         settings.set_layout("window", self.saveGeometry())
         self.switching.remember()

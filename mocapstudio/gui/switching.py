@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -79,6 +79,10 @@ class Switching(QObject):
         for one in self._made.values():
             one.remember()
         settings.set_text("workspace", self.name)
+
+    def hold_back(self, close: Callable[[], object]) -> bool:
+        """Let workspaces ask before the window closes; True where one of them does."""
+        return any(one.hold_back(close) for one in self._made.values())
 
     def _get(self, name: str) -> Workspace:
         if name not in self._made:

@@ -85,7 +85,6 @@ class HeatPlot(TimePlot):
                     PooledPoses(both.reference_poses, *scale),
                 )
                 self._groups = limb_groups(both)
-                self.reference_axis.set_clock(float(both.reference_rate), 0)
         self._true_speed = true_speed
         self._place()
 

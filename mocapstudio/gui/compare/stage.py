@@ -169,7 +169,8 @@ class StageView(QWidget):
         reference, source = state.reference, state.source
         words = ""
         if reference is not None:
-            words = f"{reference.seconds(state.frame):.2f} s · frame {state.frame}"
+            number = state.frame + reference.first_frame
+            words = f"{reference.seconds(state.frame):.2f} s · frame {number}"
         beside = ""
         if source is not None:
             at = state.source_frame
@@ -220,7 +221,8 @@ class StageView(QWidget):
         points = one.actor.points(frame).astype(float)
         self.camera.look("three-quarter", one.actor.heading(frame))
         width, height = self.left.size_in_pixels
-        self.camera.frame(points, width / height, _ROOM)
+        ground = points * (1, 0, 1) + (0, one.actor.level, 0)
+        self.camera.frame(np.concatenate([points, ground]), width / height, _ROOM)
         self._anchor = one.actor.followed[frame]
         self.camera.focal = np.array([self._anchor[0], self.camera.focal[1], self._anchor[2]])
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, Signal
 
 from mocapstudio import formats
 from mocapstudio.comparison.model import Comparison
@@ -15,34 +15,50 @@ from mocapstudio.gui.compare.bridge import CompareBridge
 from mocapstudio.gui.jobs import Jobs
 from mocapstudio.gui.messages import Messages
 from mocapstudio.gui.trouble import Trouble, understand
-from mocapstudio.motion.errors import MocapError
+from mocapstudio.motion.errors import MocapError, NoRateError
 from mocapstudio.motion.progress import Progress
 from mocapstudio.review.comparing import MOST_SOURCES, Compared, ComparingState, Recording
 
 _DOING = "This could not be compared"
+_OPENING = "This could not be opened"
 
 
 @dataclass
 class Read:
-    """What came of reading files: the performances, and what could not be read."""
+    """What came of reading files: performances, files without a rate, and what went wrong."""
 
     takes: list[Recording] = field(default_factory=list)
+    rateless: list[Path] = field(default_factory=list)
     troubles: list[Trouble] = field(default_factory=list)
 
 
-def reading(paths: Sequence[Path]) -> Generator[Progress, None, Read]:
+def reading(
+    paths: Sequence[Path], options: formats.ReadOptions | None = None
+) -> Generator[Progress, None, Read]:
     """Read files of joints or markers; a bad file is noted and the others are read."""
     result = Read()
-    for done, path in enumerate(paths):
-        yield Progress(done / len(paths), f"reading {path.name}")
+    files = [one for path in paths for one in _files(path, result)]
+    for done, path in enumerate(files):
+        yield Progress(done / len(files), f"reading {path.name}")
         try:
-            found = formats.find_takes([path]) if path.is_dir() else [path]
-            for one in found:
-                takes, _ = formats.read_any(one)
-                result.takes += takes
+            takes, _ = formats.read_any(path, options)
+        except NoRateError:
+            result.rateless.append(path)
         except Exception as error:
-            result.troubles.append(understand(error, "This could not be opened"))
+            result.troubles.append(understand(error, _OPENING))
+        else:
+            result.takes += takes
     return result
+
+
+def _files(path: Path, result: Read) -> Sequence[Path]:
+    if not path.is_dir():
+        return [path]
+    try:
+        return formats.find_takes([path])
+    except Exception as error:
+        result.troubles.append(understand(error, _OPENING))
+        return []
 
 
 class Working(QObject):
@@ -59,6 +75,9 @@ class Working(QObject):
     parent
         Qt's parent.
     """
+
+    rate_wanted = Signal(object, object)
+    """Emitted with files that state no frame rate, and what to call with one (a Fraction)."""
 
     def __init__(
         self, bridge: CompareBridge, jobs: Jobs, messages: Messages, parent: QObject
@@ -104,14 +123,28 @@ class Working(QObject):
             words = f"At most {MOST_SOURCES} sources are compared at once; left out: {left}."
             self._messages.tell(words)
 
-    def _read(self, paths: Sequence[Path], done: Callable[[Read], None]) -> None:
+    def _read(
+        self,
+        paths: Sequence[Path],
+        done: Callable[[Read], None],
+        options: formats.ReadOptions | None = None,
+    ) -> None:
         wanted = list(paths)
         name = wanted[0].name if len(wanted) == 1 else f"{len(wanted)} performances"
+
+        def arrived(read: Read) -> None:
+            done(read)
+            if read.rateless:
+                self.rate_wanted.emit(
+                    tuple(read.rateless),
+                    lambda rate: self._read(read.rateless, done, formats.ReadOptions(fps=rate)),
+                )
+
         self._jobs.start(
             f"Reading {name}",
-            reading(wanted),
-            done,
-            lambda error: self._messages.complain(error, "This could not be opened"),
+            reading(wanted, options),
+            arrived,
+            lambda error: self._messages.complain(error, _OPENING),
         )
 
     def _remember(self, paths: Sequence[Path], read: Read) -> None:

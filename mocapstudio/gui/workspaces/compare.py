@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,8 @@ from mocapstudio.gui.compare.desk import CompareDesk
 from mocapstudio.gui.compare.empty import EmptyCompare
 from mocapstudio.gui.compare.playing import ComparePlayback
 from mocapstudio.gui.compare.working import Working
+from mocapstudio.gui.dialogs.question import confirm
+from mocapstudio.gui.dialogs.rate import ask_rate
 from mocapstudio.gui.workspaces.workspace import Answers, Workspace
 from mocapstudio.review.comparing import ComparingState
 from mocapstudio.review.comparing_state import only_heads_differ
@@ -47,6 +50,7 @@ class CompareWorkspace(Workspace):
         self._stack = QStackedLayout(self)
         self._stack.addWidget(self.empty)
         self._stack.addWidget(self.desk)
+        self.working.rate_wanted.connect(partial(ask_rate, window))
         self.bridge.changed.connect(self._follow)
         self.bridge.ui_changed.connect(self._follow_ui)
         self._show(self.bridge.state)
@@ -90,6 +94,15 @@ class CompareWorkspace(Workspace):
     def leave(self) -> None:
         """Stop playing."""
         self.bridge.set_ui(playing=False)
+
+    def hold_back(self, close: Callable[[], object]) -> bool:
+        """Ask before segments that stand in no file are lost."""
+        state = self.bridge.state
+        if not (state.unsaved and state.segments):
+            return False
+        words = "The segments drawn in the Compare workspace stand in no file and would be lost."
+        confirm(self, "Close without saving the segments?", words, "Close", close)
+        return True
 
     def remember(self) -> None:
         """Remember the layout."""

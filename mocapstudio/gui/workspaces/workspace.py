@@ -80,5 +80,12 @@ class Workspace(QWidget):
     def leave(self) -> None:
         """Go out of sight: stop what runs."""
 
+    def hold_back(self, close: Callable[[], object]) -> bool:
+        """Ask before the window closes over what is not saved, and call `close` if it may.
+
+        False where there is nothing to ask.
+        """
+        return False
+
     def remember(self) -> None:
         """Remember the layout."""
