@@ -14,9 +14,13 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapstudio.cleaning.contacts.anatomy import extremities
 from mocapstudio.cleaning.contacts.model import Floor
 from mocapstudio.cleaning.ik.targets import Hold, on_floor
+from mocapstudio.motion import rotations as rot
+from mocapstudio.motion.kinematics import take_pose
 from mocapstudio.motion.take import Take
+from mocapstudio.motion.topology import topology
 
 Array = NDArray[np.float64]
 
@@ -28,8 +32,7 @@ _ALONG = 0.02
 _APART = 0.005
 """Metres: points of one foot nearer than this are one point."""
 _TURNED, _SHARE = np.cos(np.deg2rad(35.0)), 10.0
-"""A foot turns where this percentage of frames is farther from its usual direction; toes that flip
-for a few frames do not."""
+"""A foot turns where this percentage of frames is farther from its usual direction."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,12 +47,15 @@ class _Pair:
         (k,) frames of the take in which both stand.
     ways
         (k, 3) metres from the second point to the first.
+    facing
+        (k, 3) the same direction as it would be if the foot alone carried it.
     """
 
     first: int
     second: int
     frames: NDArray[np.int64]
     ways: Array
+    facing: Array
 
 
 def agreed(take: Take, laid: Sequence[Hold]) -> tuple[Hold, ...]:
@@ -66,8 +72,11 @@ def agreed(take: Take, laid: Sequence[Hold]) -> tuple[Hold, ...]:
     laid
         As `targets.holds` returns them.
     """
+    world = take_pose(take)[1]
     pairs = [
-        pair for a, b in combinations(range(len(laid)), 2) if (pair := _pair(take, laid, a, b))
+        pair
+        for a, b in combinations(range(len(laid)), 2)
+        if (pair := _pair(take, world, laid, a, b))
     ]
     # The longest contact has the first say.
     pairs.sort(key=lambda pair: -len(laid[pair.first].frames))
@@ -89,7 +98,7 @@ def agreed(take: Take, laid: Sequence[Hold]) -> tuple[Hold, ...]:
     return tuple(replace(h, projection=free.get(i, h.projection)) for i, h in enumerate(placed))
 
 
-def _pair(take: Take, laid: Sequence[Hold], a: int, b: int) -> _Pair | None:
+def _pair(take: Take, world: Array, laid: Sequence[Hold], a: int, b: int) -> _Pair | None:
     if _rank(laid[b]) > _rank(laid[a]):
         a, b = b, a
     first, second = laid[a], laid[b]
@@ -97,10 +106,27 @@ def _pair(take: Take, laid: Sequence[Hold], a: int, b: int) -> _Pair | None:
     near = first.joint in (second.joint, up[second.joint]) or up[first.joint] == second.joint
     start = max(first.contact.start, second.contact.start)
     frames = np.arange(start, min(first.contact.end, second.contact.end))
-    if not near or len(frames) == 0 or not isinstance(second.contact.target, Floor):
+    above = topology(take.skeleton).above_hips
+    if (
+        first.joint in above
+        or not near
+        or len(frames) == 0
+        or not isinstance(second.contact.target, Floor)
+    ):
         return None
     ways = first.place[frames - first.contact.start] - second.place[frames - second.contact.start]
-    return _Pair(a, b, frames, ways) if np.linalg.norm(ways, axis=1).min() > _APART else None
+    if np.linalg.norm(ways, axis=1).min() <= _APART:
+        return None
+    foot = world[frames, _foot(take, first.joint, second.joint)]
+    carried = np.median(rot.rotate(rot.conjugate(foot), ways), axis=0)
+    return _Pair(a, b, frames, ways, rot.rotate(foot, carried))
+
+
+def _foot(take: Take, first: int, second: int) -> int:
+    """Index of the ankle above two joints: toes flip in bad takes where no foot turns."""
+    limb = topology(take.skeleton).limb_of(first).name
+    ends = [*extremities(take.skeleton, "leg"), *extremities(take.skeleton, "arm")]
+    return next((end.joint for end in ends if end.limb == limb), min(first, second))
 
 
 def _rank(hold: Hold) -> tuple[bool, int]:
@@ -110,7 +136,7 @@ def _rank(hold: Hold) -> tuple[bool, int]:
 
 def _turns(pair: _Pair) -> bool:
     """Tell whether the foot turns on the floor while both points touch it."""
-    flat = pair.ways[:, [0, 2]]
+    flat = pair.facing[:, [0, 2]]
     lengths = np.linalg.norm(flat, axis=1)
     clear = lengths > _APART
     if clear.sum() < 2:

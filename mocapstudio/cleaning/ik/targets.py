@@ -194,5 +194,5 @@ def chosen_again(hold: Hold, place: Array) -> Hold:
     """Move a floor's target to where its point (m, 3) could be brought; others stay."""
     if not isinstance(hold.contact.target, Floor):
         return hold
-    stand = on_floor(hold.contact, place.mean(axis=0))
+    stand = on_floor(hold.contact, np.median(place, axis=0))
     return replace(hold, target=np.broadcast_to(stand, place.shape))

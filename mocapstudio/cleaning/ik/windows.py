@@ -24,7 +24,7 @@ from mocapstudio.motion.take import Take
 
 Array = NDArray[np.float64]
 
-CONTACT_WEIGHTS = (2e3, 4e5)
+CONTACT_WEIGHTS = (2e2, 4e5)
 """Per metre, growing: at first contacts on one foot find places that agree, at last they hold."""
 _LIMIT_WEIGHT = 30.0
 _TURN_WEIGHT = 2.0
