@@ -6,14 +6,15 @@ import math
 import time
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from mocapstudio import formats
 from mocapstudio.cleaning.detection import detect
 from mocapstudio.cleaning.mean_texture import departure, mean_texture
+from mocapstudio.evaluation import read_benchmark
 from mocapstudio.evaluation.corpora import available, entries, join, read_some
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.progress import Progress, run
@@ -108,15 +109,16 @@ def timing(
         _Work(against, lambda: run(detect(source, context)), 2, 0.2),
         *(_growth_of_source(takes, context, s) for s in (10, 20, 40, 80)),
         *(_growth_of_context(source, context, n) for n in (5, 10, 20, 30)),
-        _reading([found[i].path for i in order]),
     ]
     if long:
         whole = lasting(takes, 600.0)
         work.append(_Work("600 s against itself, exact", lambda: to_map(whole, ()), 1, 5.0))
     rows: list[SpeedRow] = []
-    for i, one in enumerate(work):
-        yield Progress(i / len(work), one.name)
-        rows.append(one.measured())
+    with read_benchmark.large_bvh() as large:
+        work += _reading(large)
+        for i, one in enumerate(work):
+            yield Progress(i / len(work), one.name)
+            rows.append(one.measured())
     return rows
 
 
@@ -142,13 +144,22 @@ def _growth_of_context(source: Take, context: Sequence[Take], count: int) -> _Wo
     return _Work(name, lambda: to_map(source, context[:count]), series="context", size=size)
 
 
-def _reading(paths: Sequence[Path]) -> _Work:
-    largest = max(paths, key=lambda path: path.stat().st_size)
-    megabytes = largest.stat().st_size / 1e6
-    # The figure to reach is for a large file; small ones cost mostly the opening.
-    reach = 0.02 * megabytes if megabytes > 5 else math.nan
-    name = f"read a {megabytes:.1f} MB take ({largest.suffix[1:]})"
-    return _Work(name, lambda: formats.read(largest), 5, reach)
+def _reading(path: Path) -> list[_Work]:
+    """Our reader first, then the peers; those that are not installed are named without a time."""
+    size = f"{path.stat().st_size / 1e6:.0f} MB BVH to arrays"
+    work = [_Work(f"read a {size}", lambda: read_benchmark.ours(path), 3, 0.2)]
+    there = read_benchmark.installed()
+    for name in read_benchmark.PEERS:
+        if name in there:
+            peer = there[name]
+            work.append(_Work(f"the same by {name}", partial(peer, path), 1))
+        else:
+            work.append(_Work(f"the same by {name}: not installed (extra 'peers')", _nothing, 0))
+    return work
+
+
+def _nothing() -> None:
+    """Stand in for a library that is not there."""
 
 
 def to_map(take: Take, context: Sequence[Take]) -> object:
@@ -175,8 +186,10 @@ def lasting(takes: Sequence[Take], seconds: float) -> Take:
 def best_of(action: Callable[[], object], times: int) -> tuple[float, float]:
     """Shortest clock time and processor time of some runs, seconds, after one to warm up.
 
-    A single run is not warmed up.
+    A single run is not warmed up; none at all takes no time that could be told.
     """
+    if times == 0:
+        return math.nan, math.nan
     if times > 1:
         action()
     clock, cpu = [], []
