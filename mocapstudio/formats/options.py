@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -15,6 +16,10 @@ Forward = Literal["x", "-x", "y", "-y", "z", "-z"]
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "asf": 0.0254 / 0.45}
 """Metres per unit by name; ``asf`` is the 1/0.45 inch of the CMU database."""
+
+
+_SLOWEST = Fraction(1, 1000)
+_LONG_EXPONENT = re.compile(r"e[+-]?\d{4}", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -109,12 +114,13 @@ def parse_rate(text: str) -> Fraction:
         If the text is no positive number.
     """
     try:
-        rate = Fraction(text)
+        # A longer exponent would take all memory before it is found to be none.
+        rate = Fraction("" if _LONG_EXPONENT.search(text) else text)
     except (ValueError, ZeroDivisionError):
         raise ParameterError(
             f"{text!r} is no frame rate: such as 30, 119.88 or 120000/1001"
         ) from None
-    if not 0 < rate <= 1_000_000:
+    if not _SLOWEST <= rate <= 1_000_000:
         raise ParameterError(f"frame rate {text} is not in 0..1000000")
     nominal = round(rate)
     ntsc = Fraction(nominal * 1000, 1001)

@@ -24,7 +24,10 @@ def test_rates(text: str, rate) -> None:
     assert parse_rate(text) == rate
 
 
-@pytest.mark.parametrize("text", ["", "fast", "0", "-30", "1/0", "nan", "inf", "1e99"])
+@pytest.mark.parametrize(
+    "text",
+    ["", "fast", "0", "-30", "1/0", "nan", "inf", "1e99", "1e-99", "1e-999999999", "1E+999999999"],
+)
 def test_what_is_no_rate(text: str) -> None:
     with pytest.raises(ParameterError):
         parse_rate(text)
