@@ -91,6 +91,15 @@ Lenient = Annotated[
         rich_help_panel=_PANEL,
     ),
 ]
+Asf = Annotated[
+    Path | None,
+    typer.Option(
+        "--asf",
+        metavar="FILE",
+        help="The skeleton of AMC files, where their names and folder do not tell it.",
+        rich_help_panel=_PANEL,
+    ),
+]
 JointMap = Annotated[
     Path | None,
     typer.Option(
@@ -135,6 +144,7 @@ class TakeOptions:
     root_offset: RootOffset = "replace"
     t_pose: TPose = "trim"
     lenient: Lenient = False
+    asf: Asf = None
 
     def reading(self) -> ReadOptions:
         """Return what the readers are told."""
@@ -149,6 +159,7 @@ class TakeOptions:
             root_offset=self.root_offset,
             trim_start=self.t_pose == "trim",
             lenient=self.lenient,
+            skeleton=self.asf,
         )
 
 
