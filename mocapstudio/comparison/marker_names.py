@@ -19,7 +19,7 @@ _TRUNK = re.compile(
     r"|fwt|bwt|mwt|fhp|bhp|asis|psis|midhip|midasis|waist|root)"
 )
 _ARM = re.compile(
-    r"^(sho|shd|acr|as[hk]|psh|upa|ua\d|uarm|upper ?arm|arm|elb|lel|mel|frm|fa|fore|wr|wra|wrb|fin"
+    r"^(sho|shd|acr|as[hk]|psh|upa|ua\d|uarm|upper ?arm|arm|elb|lel|mel|frm|fa(?!k)|fore|wr|wra|wrb|fin"
     r"|ind|pnk|hand|thumb|thm|ejc|sjc|wjc|clavicle)"
 )
 _LEG = re.compile(

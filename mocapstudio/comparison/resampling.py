@@ -15,8 +15,8 @@ def lanczos(values: Array, frames: int) -> Array:
     """Resample (F, ...) to `frames` frames; first and last stay first and last.
 
     Where frames get fewer, the kernel is widened, so that what the lower rate cannot hold is
-    filtered out. Beyond the ends the sequence is continued by point reflection, which keeps
-    straight lines straight.
+    filtered out. Beyond the ends the sequence is continued by point reflection, so that
+    a line goes on as a line.
     """
     count = len(values)
     if frames == count or count == 1:
@@ -24,7 +24,8 @@ def lanczos(values: Array, frames: int) -> Array:
     flat = np.asarray(values, np.float64).reshape(count, -1)
     step = (count - 1) / max(frames - 1, 1)
     width = _LOBES * max(step, 1.0)
-    reach = int(np.ceil(width))
+    # A reflection reaches no further than the sequence is long.
+    reach = min(int(np.ceil(width)), count - 1)
     taps = np.arange(-reach, reach + 1)
     result = np.empty((frames, flat.shape[1]))
     for start in range(0, frames, _CHUNK):
