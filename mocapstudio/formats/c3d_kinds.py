@@ -87,7 +87,7 @@ def _pairs(words: Sequence[str]) -> list[tuple[str, str]]:
     return [
         (name, kind)
         for name, kind in zip(words[::2], words[1::2], strict=False)
-        if name.upper() not in ("LABELS", "DESCRIPTIONS")
+        if name.upper() not in ("LABELS", "DESCRIPTIONS") and kind.upper() != "MARKER"
     ]
 
 

@@ -149,6 +149,13 @@ def test_outputs_of_a_model_are_told_from_markers() -> None:
     assert said.count("left out of the markers, kept in the file") == 8
 
 
+def test_a_list_of_markers_leaves_them_markers() -> None:
+    groups = {"ALLMARKERS": ["A", "B"], "TYPE_GROUPS": [["ALLMARKERS", "MARKER"]]}
+    made = Made(millimetres(), labels=["A", "B", "C"], more={"POINT": Y_UP["POINT"] | groups})
+    (take,), report = read(made)
+    assert (take.labels, report.problems) == (("A", "B", "C"), ())
+
+
 def test_points_that_no_camera_saw_are_guessed_to_be_computed() -> None:
     xyz = millimetres(points=12)
     fourth = np.full(xyz.shape[:2], 1 << 8 | 5)
