@@ -19,8 +19,8 @@ _TRUNK = re.compile(
     r"|fwt|bwt|mwt|fhp|bhp|asis|psis|midhip|midasis|waist|root)"
 )
 _ARM = re.compile(
-    r"^(sho|shd|acr|as[hk]|psh|upa|ua\d|uarm|upper ?arm|arm|elb|lel|mel|frm|fa(?!k)|fore|wr|wra|wrb|fin"
-    r"|ind|pnk|hand|thumb|thm|ejc|sjc|wjc|clavicle)"
+    r"^(sho|shd|acr|as[hk]|psh|upa|ua\d|uarm|upperarm|arm|elb|lel|mel|frm|fa(?!k)|fore"
+    r"|wr|fin|ind|pnk|hand|thumb|thm|ejc|sjc|wjc|clavicle)"
 )
 _LEG = re.compile(
     r"^(thi|th\d|kne|mkne|mknee|lfc|mfc|fem|tib|tb\d|shn|shin|shank|ank|mank|lmal|mmal|mal|hee"

@@ -24,8 +24,8 @@ def lanczos(values: Array, frames: int) -> Array:
     flat = np.asarray(values, np.float64).reshape(count, -1)
     step = (count - 1) / max(frames - 1, 1)
     width = _LOBES * max(step, 1.0)
-    # A reflection reaches no further than the sequence is long.
-    reach = min(int(np.ceil(width)), count - 1)
+    reach = int(np.ceil(width))
+    padded = np.pad(flat, ((reach, reach), (0, 0)), mode="reflect", reflect_type="odd")
     taps = np.arange(-reach, reach + 1)
     result = np.empty((frames, flat.shape[1]))
     for start in range(0, frames, _CHUNK):
@@ -34,10 +34,5 @@ def lanczos(values: Array, frames: int) -> Array:
         apart = (near - at[:, None]) / max(step, 1.0)
         weight = np.where(np.abs(apart) < _LOBES, np.sinc(apart) * np.sinc(apart / _LOBES), 0.0)
         weight /= weight.sum(axis=1, keepdims=True)
-        inside = np.clip(near, 0, count - 1)
-        mirrored = np.clip(2 * inside - near, 0, count - 1)
-        outside = near != inside
-        samples = flat[mirrored]
-        samples[outside] = 2 * flat[inside[outside]] - samples[outside]
-        result[start : start + len(at)] = np.einsum("ft,ftd->fd", weight, samples)
+        result[start : start + len(at)] = np.einsum("ft,ftd->fd", weight, padded[near + reach])
     return result.reshape(frames, *values.shape[1:])
