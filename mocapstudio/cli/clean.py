@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from mocapstudio.cli.contact_options import Partner, by_take
 from mocapstudio.cli.detection_options import ModeOption, Quick, Threshold
 from mocapstudio.cli.output import JsonPath, check_writable, write_json
 from mocapstudio.cli.take_options import Context, TakeOptions, with_take_options
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
     from mocapstudio.cleaning.analysis import Analysis
     from mocapstudio.cleaning.model import Flag
     from mocapstudio.cli.contact_files import Touching
+    from mocapstudio.motion.take import Take
     from mocapstudio.review.document import Document
 
 OutPath = Annotated[
@@ -41,6 +44,7 @@ def clean(
             " folder with a file of each take's name, such as 05_02.json.",
         ),
     ] = None,
+    partner: Partner = None,
     threshold: Threshold = None,
     mode: ModeOption = None,
     quick: Quick = False,
@@ -54,7 +58,7 @@ def clean(
     as its provenance. With --contacts, of a flag's neighbours the one that comes closest to the
     contact is taken, and at the end every contact is held at its place.
     """
-    from mocapstudio.cli import changes, contact_files
+    from mocapstudio.cli import changes
     from mocapstudio.cli.detection_options import analyse, parameters
     from mocapstudio.cli.take_files import Workload
     from mocapstudio.cli.targets import Targets
@@ -65,23 +69,21 @@ def clean(
     work = Workload(reading)
     files = work.files(takes)
     context_files = work.files(context or ())
-    touched = contact_files.by_take(contacts, files)
-    targets = Targets(out, files, (*files, *context_files, *touched.values()))
+    touched = by_take(contacts, files)
+    beside = partner or ()
+    targets = Targets(out, files, (*files, *context_files, *touched.values(), *beside))
     others = work.context(context_files)
+    partners = [one for path in beside for one in work.read(path)]
     done: list[dict[str, Any]] = []
     for path in files:
         with work.going_on():
             found = work.read(path)
             for take in found:
                 target = targets.of(path, take, alone=len(found) == 1)
-                scene = None
-                if path in touched:
-                    scene = contact_files.with_file(path, found, take, touched[path])
+                scene = _scene(path, [*found, *partners], take, touched.get(path))
                 document, performer = repaired(
                     analyse(take, others, chosen, quick=quick), context or (), scene
                 )
-                if scene is not None:
-                    contact_files.hold(document, scene.over(document.result(performer)))
                 export(document, performer, target)
                 done.append(changes.as_json(path, target, document.state.sitting.edits))
     write_json({"takes": done}, json_path)
@@ -96,7 +98,8 @@ def repaired(
     """Return a document in which every flag of an analysis is accepted, and the performer's id.
 
     Where a flag moves a contact of `scene`, the neighbour is taken that comes closest to it. A
-    flag that nothing can be proposed for stays open, with a warning on standard error.
+    flag that nothing can be proposed for stays open, with a warning on standard error. At the end
+    the contacts are held.
     """
     from mocapstudio.review.document import Document
 
@@ -113,7 +116,19 @@ def repaired(
         except MocapError as error:
             place = f"{flag.joint} at frames {flag.start}:{flag.end}"
             print(f"warning: {analysis.take.name}: {place}: {error}", file=sys.stderr)
+    if scene is not None:
+        from mocapstudio.cli.contact_files import hold
+
+        hold(document, scene.over(document.result(performer)))
     return document, performer
+
+
+def _scene(path: Path, takes: Sequence[Take], take: Take, contacts: Path | None) -> Touching | None:
+    if contacts is None:
+        return None
+    from mocapstudio.cli.contact_files import with_file
+
+    return with_file(path, takes, take, contacts)
 
 
 def _meet_contacts(document: Document, analysis: Analysis, flag: Flag, scene: Touching) -> None:

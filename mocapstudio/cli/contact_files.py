@@ -110,27 +110,10 @@ def with_file(path: Path, scene: Sequence[Take], take: Take, contacts: Path) -> 
         target = contact.target
         if isinstance(target, Following) and target.performer not in others:
             raise FileError(
-                contacts, f"contact {contact.id} follows {target.performer}: no such take"
+                contacts,
+                f"contact {contact.id} follows {target.performer}: name that take by --partner",
             )
     return Touching(path, take, file.contacts, tuple(adjusted.values()), others)
-
-
-def by_take(contacts: Path | None, files: Sequence[Path]) -> dict[Path, Path]:
-    """Return the file of contacts of each take: one for one, or from a folder by name.
-
-    Raises
-    ------
-    FileError
-        If one file is given for several takes.
-    """
-    if contacts is None:
-        return {}
-    if contacts.is_dir():
-        named = {file: contacts / f"{file.stem}.json" for file in files}
-        return {file: found for file, found in named.items() if found.is_file()}
-    if len(files) > 1:
-        raise FileError(contacts, "is one file; several takes need a folder of contacts")
-    return dict.fromkeys(files, contacts)
 
 
 def held(scene: Touching) -> tuple[SkateResult, Document, str]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from mocapstudio.cli.contact_options import Partner
 from mocapstudio.cli.output import JsonPath, check_writable, write_json
 from mocapstudio.cli.take_options import TakeOptions, with_take_options
 from mocapstudio.motion.errors import FileError
@@ -31,14 +32,7 @@ def contacts(
         Path | None,
         typer.Option("-o", "--out", metavar="OUT", help="Remove foot skate and write the motion."),
     ] = None,
-    partner: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--partner",
-            metavar="PATH",
-            help="A take of another performer or prop in the same space and time; repeatable.",
-        ),
-    ] = None,
+    partner: Partner = None,
     json_path: JsonPath = None,
     *,
     reading: TakeOptions,
