@@ -31,6 +31,8 @@ _ALONG = 0.02
 """Share of a hold that remains along the line to a point that stands longer."""
 _APART = 0.005
 """Metres: points of one foot nearer than this are one point."""
+_STEEP = 0.3
+"""A foot this far from level, as a share of its length, is not brought down flat."""
 _TURNED, _SHARE = np.cos(np.deg2rad(35.0)), 10.0
 """A foot turns where this percentage of frames is farther from its usual direction."""
 
@@ -156,7 +158,7 @@ def _placed(laid: Sequence[Hold], pairs: Sequence[_Pair]) -> list[Hold]:
     right = weights[:, None] * np.array([h.target[0] for h in laid])
     for pair in pairs:
         strength = _TOGETHER * len(pair.frames)
-        apart = strength * np.median(pair.ways, axis=0)
+        apart = strength * _standing_way(laid, pair)
         a, b = pair.first, pair.second
         system[[a, b], [a, b]] += strength
         system[[a, b], [b, a]] -= strength
@@ -173,3 +175,15 @@ def _placed(laid: Sequence[Hold], pairs: Sequence[_Pair]) -> list[Hold]:
         replace(h, target=np.broadcast_to(on_floor(h.contact, spot), h.place.shape)) if free else h
         for h, spot, free in zip(laid, spots, chosen, strict=True)
     ]
+
+
+def _standing_way(laid: Sequence[Hold], pair: _Pair) -> Array:
+    """(3,) metres between two points once both stand on their floors: as long as the bones are."""
+    way = np.median(pair.ways, axis=0)
+    length = float(np.median(np.linalg.norm(pair.ways, axis=1)))
+    rise = float(laid[pair.first].target[0, 1] - laid[pair.second].target[0, 1])
+    flat = way * [1.0, 0.0, 1.0]
+    across = float(np.linalg.norm(flat))
+    if across < _STEEP * length or abs(rise) > length:
+        return way
+    return np.asarray(flat * np.sqrt(length**2 - rise**2) / across + [0.0, rise, 0.0])

@@ -134,7 +134,7 @@ class Drag:
         )
         keep = KeepPose(1, self._free.stiffness)
         problem = Problem(self._view, self._free, [pull, *self._wishes], [keep])
-        solution = solve(problem, self._unknowns, _MOST_STEPS)
+        solution = solve(problem, self._unknowns, _MOST_STEPS, tolerance=1e-3)
         self._unknowns = solution.unknowns
         posed = problem.posed(self._unknowns)
         point = posed.point(self._joint, self._point.offset)[0]

@@ -167,12 +167,13 @@ def _solve_window(
         problem = windows.problem(
             take, inside, span, ranges, parameters.easing, parameters.root_reach, weight
         )
-        solution = solve(problem, start)
+        solution = solve(problem, start, tolerance=windows.TOLERANCE)
         start = solution.unknowns
         if weight < windows.CONTACT_WEIGHTS[-1]:
             posed = problem.posed(start)
             reached = [posed.point(h.joint, h.offset, h.frames - span[0]) for h in inside]
             inside = [chosen_again(h, place) for h, place in zip(inside, reached, strict=True)]
+            inside = agreed(take, inside)
     return Departure(span, problem, solution.unknowns), inside
 
 

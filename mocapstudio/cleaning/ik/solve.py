@@ -22,8 +22,6 @@ from mocapstudio.cleaning.ik.posed import Posed, Window
 
 Array = NDArray[np.float64]
 
-_SETTLED = 1e-3
-"""Relative fall of the cost below which a solution is settled."""
 _FIRST_DAMPING = 1e-6
 
 
@@ -86,7 +84,12 @@ def gradient(problem: Problem, unknowns: Array) -> Array:
     return _normal(problem, _time_band(problem), unknowns, rows)[1]
 
 
-def solve(problem: Problem, start: Array | None = None, most_steps: int = 30) -> Solution:
+def solve(
+    problem: Problem,
+    start: Array | None = None,
+    most_steps: int = 30,
+    tolerance: float = 1e-5,
+) -> Solution:
     """Minimise the sum of squares.
 
     Parameters
@@ -97,6 +100,8 @@ def solve(problem: Problem, start: Array | None = None, most_steps: int = 30) ->
         (F, n) first guess: warm start; by default the motion as it was.
     most_steps
         Bound on the linear systems solved.
+    tolerance
+        Relative fall of the cost below which it is settled.
     """
     frames, size = problem.window.frames, problem.freedom.size
     unknowns = np.zeros((frames, size)) if start is None else start
@@ -115,13 +120,13 @@ def solve(problem: Problem, start: Array | None = None, most_steps: int = 30) ->
         expected = 0.5 * float(np.sum(move * (damping * band[:, :, 0] * move - slope)))
         rows = _rows(problem, unknowns + move)
         fall = now - _cost(problem, unknowns + move, rows)
-        if fall < 0 and expected > _SETTLED * now:
+        if fall < 0 and expected > tolerance * now:
             damping, growth = max(damping, 1e-6) * growth, growth * 2
             continue
         if fall < 0:
             return Solution(unknowns, now, step, True)
         unknowns, now = unknowns + move, now - fall
-        if fall <= _SETTLED * now:
+        if fall <= tolerance * now:
             return Solution(unknowns, now, step, True)
         damping *= max(1.0 / 3.0, 1.0 - (2.0 * fall / expected - 1.0) ** 3)
         growth = 2.0

@@ -43,7 +43,8 @@ class Hold:
     joint, offset
         Index of the joint, and the point (3,) metres in its frame.
     place
-        (m, 3) metres: where the point was in the world over the contact's m frames.
+        (m, 3) metres: where the point was over the contact's m frames, at first in the take, then
+        where it could be brought.
     target
         (m, 3) metres: where it is to be.
     projection
@@ -191,8 +192,8 @@ def on_floor(contact: Contact, place: Array) -> Array:
 
 
 def chosen_again(hold: Hold, place: Array) -> Hold:
-    """Move a floor's target to where its point (m, 3) could be brought; others stay."""
+    """Move a floor's target to where its point was brought, (m, 3) metres; others stay."""
     if not isinstance(hold.contact.target, Floor):
         return hold
     stand = on_floor(hold.contact, np.median(place, axis=0))
-    return replace(hold, target=np.broadcast_to(stand, place.shape))
+    return replace(hold, place=place, target=np.broadcast_to(stand, place.shape))
