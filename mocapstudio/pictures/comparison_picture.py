@@ -75,7 +75,7 @@ def comparison_picture(
     axes = _axes(figure, size)
     times = _times(comparison)
     colours = np.array(_timing_colours(palette))[comparison.timing.astype(int) + 1]
-    _difference(axes[0], comparison, times, colours, palette)
+    _difference(axes[0], comparison, times, palette)
     _misalignment(axes[1], comparison, times, colours, palette)
     width = size[0] - _LEFT - _RIGHT
     for one, poses, label, at in (
@@ -130,20 +130,17 @@ def _times(comparison: Comparison) -> _Times:
     return _Times(source, reference * stretch, matched * stretch, span, (label, ""))
 
 
-def _difference(
-    axes: Axes,
-    comparison: Comparison,
-    times: _Times,
-    colours: NDArray[np.str_],
-    palette: Palette,
-) -> None:
+def _difference(axes: Axes, comparison: Comparison, times: _Times, palette: Palette) -> None:
     dress(axes, palette)
-    values = comparison.pose_difference
+    starts = _columns(len(times.source), int(axes.get_window_extent().width))
+    values = np.add.reduceat(comparison.pose_difference, starts)
+    values = values / np.diff(np.append(starts, len(times.source)))
+    timing, seconds = comparison.timing[starts], times.source[starts]
     for at, value in enumerate(_timing_colours(palette)):
-        here = comparison.timing == _SIGNS[at]
-        # A run is drawn up to the next frame, so that no gap shows where the colour changes.
+        here = timing == _SIGNS[at]
+        # A run is drawn up to the next column, so that no gap shows where the colour changes.
         here = here | np.concatenate([[False], here[:-1]])
-        axes.fill_between(times.source, values, where=list(here), color=value, linewidth=0)
+        axes.fill_between(seconds, values, where=list(here), color=value, linewidth=0)
     axes.set_ylim(0, max(float(values.max()) * 1.08, 1e-3))
     unit = "radians" if comparison.features == "rotations" else "of the unit box"
     _name(axes, "pose difference", unit, palette)
@@ -169,24 +166,30 @@ def _misalignment(
     for y, word in ((0.96, "ahead"), (0.04, "behind")):
         axes.text(
             0.995, y, word, transform=axes.transAxes, ha="right", va="top" if y > 0.5 else "bottom",
-            color=palette.muted, fontsize=9,
+            color=palette.muted, fontsize=9, backgroundcolor=palette.field,
         )  # fmt: skip
-    kind = "seconds" if comparison.true_speed else "seconds, tempo apart"
+    kind = "seconds" if comparison.true_speed else "s, tempo apart"
     _name(axes, "misalignment", kind, palette)
 
 
 def _heat_map(axes: Axes, poses: NDArray[np.float32], at: NDArray[np.float64], most: int) -> None:
     frames = len(poses)
-    starts = np.arange(min(most, frames)) * frames // min(most, frames)
+    starts = _columns(frames, most)
     counts = np.diff(np.append(starts, frames))[:, None, None]
     image = np.add.reduceat(poses, starts, axis=0) / counts
-    half = 0.5 * (at[-1] / max(frames - 1, 1))
+    half = max(0.5 * (at[-1] / max(frames - 1, 1)), 1e-3)
     axes.imshow(
         np.clip(image, 0, 1).transpose(1, 0, 2),
         aspect="auto",
         interpolation="nearest",
         extent=(-half, float(at[-1]) + half, poses.shape[1] - 0.5, -0.5),
     )
+
+
+def _columns(frames: int, most: int) -> NDArray[np.int64]:
+    """First frame of each column of pixels, of which there are at most `most`."""
+    count = min(max(most, 1), frames)
+    return np.arange(count) * frames // count
 
 
 def _timing_lines(axes: Axes, times: _Times, colours: NDArray[np.str_], palette: Palette) -> None:
@@ -220,6 +223,7 @@ def _name_rows(
     axes: Axes, comparison: Comparison, what: str, palette: Palette, size: tuple[int, int]
 ) -> None:
     dress(axes, palette)
+    axes.set_facecolor(palette.background)
     count = len(comparison.rows)
     names = [row.split(":")[-1] for row in comparison.rows]
     tall = axes.get_position().height * size[1]
