@@ -46,6 +46,7 @@ def warm() -> Generator[Progress, None, Finding]:
     from mocapstudio.cleaning.detection import detect
     from mocapstudio.cleaning.parameters import CALIBRATED, PAPER, DetectionParameters
     from mocapstudio.cleaning.proposals import propose
+    from mocapstudio.comparison.kata import compare
     from mocapstudio.evaluation.demo import demo_take
 
     began = time.monotonic()
@@ -55,8 +56,9 @@ def warm() -> Generator[Progress, None, Finding]:
     # A threshold low enough that there is something to repair.
     low = {mode: DetectionParameters(mode=mode, threshold=0.1) for mode in (PAPER, CALIBRATED)}
     yield from _part(detect(take, (), low[CALIBRATED], decision=decision), 0.6, 0.8)
-    analysis = yield from _part(detect(take, (), low[PAPER]), 0.8, 1.0)
+    analysis = yield from _part(detect(take, (), low[PAPER]), 0.8, 0.95)
     propose(analysis, analysis.flags[0])
+    yield from _part(compare(take, take), 0.95, 1.0)
     return Finding("Kernels", State.OK, f"all compiled, after {time.monotonic() - began:.0f} s")
 
 
