@@ -9,31 +9,33 @@ from mocapstudio.cleaning.ik.freedom import Freedom
 from mocapstudio.motion.take import Take
 
 
-def place(take: Take, free: Freedom, unknowns: np.ndarray) -> tuple[np.ndarray, list]:
-    """World positions (F, J, 3) and rotations (F lists of J) with departures applied."""
+def turn(v: np.ndarray) -> np.ndarray:
+    """Rotation matrix of a rotation vector (Rodrigues)."""
+    angle = float(np.sqrt(v @ v))
+    if angle < 1e-12:
+        return np.eye(3)
+    x, y, z = v / angle
+    k = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + np.sin(angle) * k + (1 - np.cos(angle)) * k @ k
+
+
+def place(
+    take: Take, free: Freedom, unknowns: np.ndarray, frame: int, joint: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """World position (3,) and rotation (3, 3) of one joint with departures applied."""
     skeleton = take.skeleton
-    positions = np.zeros((take.frames, len(skeleton), 3))
-    rotations = []
     first = 3 if free.reach > 0 else 0
-    for f in range(take.frames):
-        world: list[Rotation] = []
-        for j in range(len(skeleton)):
-            local = Rotation.from_quat(take.rotations[f, j])
-            if j in free.joints:
-                i = free.joints.index(j)
-                along = unknowns[f, first + 3 * i : first + 3 * i + 3]
-                local = local * Rotation.from_rotvec(free.axes[i] @ along)
-            if j == 0:
-                x = unknowns[f, :3] if first else np.zeros(3)
-                bend = np.sqrt(1 + x @ x / free.reach**2) if first else 1.0
-                positions[f, 0] = take.translations[f, 0] + x / bend
-                world.append(local)
-            else:
-                parent = int(skeleton.parents[j])
-                positions[f, j] = positions[f, parent] + world[parent].apply(skeleton.offsets[j])
-                world.append(world[parent] * local)
-        rotations.append(world)
-    return positions, rotations
+    local = Rotation.from_quat(take.rotations[frame, joint]).as_matrix()
+    if joint in free.joints:
+        i = free.joints.index(joint)
+        along = unknowns[frame, first + 3 * i : first + 3 * i + 3]
+        local = local @ turn(free.axes[i] @ along)
+    if joint == 0:
+        x = unknowns[frame, :3] if first else np.zeros(3)
+        bend = np.sqrt(1 + x @ x / free.reach**2) if first else 1.0
+        return take.translations[frame, 0] + x / bend, local
+    position, world = place(take, free, unknowns, frame, int(skeleton.parents[joint]))
+    return position + world @ skeleton.offsets[joint], world @ local
 
 
 def point_residual(
@@ -46,13 +48,11 @@ def point_residual(
     weight: float,
 ) -> np.ndarray:
     """Weighted distances of one point from its target at each frame that has one."""
-    positions, rotations = place(take, free, unknowns)
-    return np.concatenate(
-        [
-            weight * (positions[f, joint] + rotations[f][joint].apply(offset) - target)
-            for f, target in targets.items()
-        ]
-    )
+    found = []
+    for frame, target in targets.items():
+        position, world = place(take, free, unknowns, frame, joint)
+        found.append(weight * (position + world @ offset - target))
+    return np.concatenate(found)
 
 
 def orientation_residual(
@@ -64,17 +64,15 @@ def orientation_residual(
     weight: float,
 ) -> np.ndarray:
     """Weighted rotation vectors of one joint from its target rotation matrix in the world."""
-    _, rotations = place(take, free, unknowns)
-    return np.concatenate(
-        [
-            weight * (Rotation.from_matrix(target).inv() * rotations[f][joint]).as_rotvec()
-            for f, target in targets.items()
-        ]
-    )
+    found = []
+    for frame, target in targets.items():
+        _, world = place(take, free, unknowns, frame, joint)
+        found.append(weight * Rotation.from_matrix(target.T @ world).as_rotvec())
+    return np.concatenate(found)
 
 
 def smoothness_residual(unknowns: np.ndarray, weights: np.ndarray, order: int) -> np.ndarray:
     """Differences over time of departures that are zero outside the window."""
-    padded = np.vstack([np.zeros((order, unknowns.shape[1]))] * 1 + [unknowns])
-    padded = np.vstack([padded, np.zeros((order, unknowns.shape[1]))])
+    outside = np.zeros((order, unknowns.shape[1]))
+    padded = np.vstack([outside, unknowns, outside])
     return (np.diff(padded, n=order, axis=0) * weights).ravel()

@@ -35,14 +35,18 @@ Array = NDArray[np.float64]
 
 _PULL = 1e3
 """Per metre, of the point that is dragged."""
-_PIN = 5e4
+_PIN = 5e3
+_FARTHEST = 0.25
+"""Metres: from farther away the point is pulled as hard as from here, so that what is out of reach
+turns the limb there instead of tearing at it."""
 _LIMIT = 10.0
 _TURN = 2.0
 _KEY = 1e5
 _TRUNK_DRAGGED, _LIMB_DRAGGED = np.full(3, 3.0), np.full(3, 20.0)
 """Stiffness of the body's place, per metre: the trunk comes along before it bends, a limb is
 stretched before the body follows."""
-_MOST_STEPS = 8
+_MOST_STEPS = 10
+_TOLERANCE = 1e-5
 _RELEASE_STEPS = 15
 
 
@@ -129,12 +133,13 @@ class Drag:
     def to(self, target: Array) -> DragPose:
         """Pose the frame with the dragged point at `target` (3,) metres, or as near as it gets."""
         goal = np.asarray(target, dtype=float)
-        pull = PointAtTarget(
-            self._joint, self._point.offset, np.array([0]), goal[None], _PULL, np.eye(3)
-        )
+        now = Posed(self._view, self._free, self._unknowns).point(self._joint, self._point.offset)
+        share = _FARTHEST / max(float(np.linalg.norm(goal - now[0])), _FARTHEST)
+        near = now + share * (goal - now)
+        pull = PointAtTarget(self._joint, self._point.offset, np.array([0]), near, _PULL, np.eye(3))
         keep = KeepPose(1, self._free.stiffness)
         problem = Problem(self._view, self._free, [pull, *self._wishes], [keep])
-        solution = solve(problem, self._unknowns, _MOST_STEPS, tolerance=1e-3)
+        solution = solve(problem, self._unknowns, _MOST_STEPS, _TOLERANCE)
         self._unknowns = solution.unknowns
         posed = problem.posed(self._unknowns)
         point = posed.point(self._joint, self._point.offset)[0]
