@@ -184,7 +184,8 @@ def ours_given_truth(case: Case, analysis: Analysis) -> Repaired:
             flags.append(
                 Flag(name, row, truth.joints, truth.start, truth.end, 1.0, middle, 1.0, kind)
             )
-    return _accepted(analysis, flags)
+    # As the peers are, the engine is told of all that is wrong.
+    return _accepted(replace(analysis, flags=tuple(flags)), flags)
 
 
 def ours_as_detected(_: Case, analysis: Analysis) -> Repaired:
@@ -198,7 +199,7 @@ def _accepted(analysis: Analysis, flags: Iterable[Flag]) -> Repaired:
     take = analysis.take
     hips = take.skeleton.names[topology(take.skeleton).hips]
     for flag in sorted(flags, key=lambda f: f.joint in ROOT_ROWS):
-        proposal = propose(replace(analysis, take=take), flag)
+        proposal = propose(analysis, flag, onto=take)
         take = apply(take, proposal)
         declared += _declared(proposal, hips)
     return Repaired(take, tuple(declared))

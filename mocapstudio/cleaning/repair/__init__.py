@@ -1,0 +1,1 @@
+"""What is offered for a flag: joint estimates, donors, exchanged sides, and the root."""
