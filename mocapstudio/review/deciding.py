@@ -11,6 +11,7 @@ from mocapstudio.motion.take import Take
 from mocapstudio.review import decisions, protection, walk
 from mocapstudio.review.core import Core, new_id
 from mocapstudio.review.model import Edit, Protected, QueueItem, Verdict
+from mocapstudio.review.replay import replay
 from mocapstudio.review.rows import check_rows, check_span
 
 
@@ -174,12 +175,18 @@ class Deciding(Core):
         )
 
     def _onto_the_others(self, performer: str, flag: Flag) -> Proposal | None:
-        """Make a proposal anew over what is repaired by now; None without a whole analysis."""
+        """Make a proposal anew over what other flags' edits repair; None without an analysis."""
         from mocapstudio.cleaning.analysis import Analysis
 
         if not isinstance(self._analyses.latest.get(performer), Analysis):
             return None
-        return self._propose(performer, flag, self.result(performer))
+        others = [
+            edit
+            for edit in self._history.present.edits
+            if edit.performer == performer and edit.flag != flag.id
+        ]
+        repaired = replay(self._take(performer), others)
+        return self._propose(performer, flag, replace(repaired, trim=self._trim(performer)))
 
     def _propose(self, performer: str, flag: Flag, onto: Take | None = None) -> Proposal:
         # The engine's kernels take a while to import; a desk that only looks needs none.
