@@ -88,7 +88,9 @@ def method(name: str) -> str:
     """Say how replacement motion was made."""
     words = {
         "neighbours": "motion of a neighbour, blended at both ends",
+        "prediction": "what the other joints let expect, led into both ends",
         "interpolation": "interpolated across the span",
+        "turned back": "turned back by the angle of the flip",
         "swap": "left and right swapped back",
     }
     return words.get(name, name)
