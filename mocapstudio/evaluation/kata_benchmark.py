@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,7 @@ from mocapstudio.comparison.kata import compare
 from mocapstudio.comparison.labels import labels_of, read_labels
 from mocapstudio.comparison.parameters import PAPER, ROOT, ComparisonParameters
 from mocapstudio.comparison.segments import boundary_errors, suggested
-from mocapstudio.evaluation.kata_peers import peers
+from mocapstudio.evaluation.kata_peers import Peer, peers
 from mocapstudio.evaluation.kata_warps import Disturbance, perform_again
 from mocapstudio.evaluation.tables import Table
 from mocapstudio.motion.errors import MocapError
@@ -166,16 +166,33 @@ def _takes(data: Sequence[Path], seed: int, limit: int) -> list[Take]:
 
 
 def kata_speed(
-    *, frames: int = KATA_FRAMES, seed: int = 0, times: int = 3
+    *,
+    frames: int = KATA_FRAMES,
+    seed: int = 0,
+    times: int = 5,
+    beside: Mapping[str, Peer] | None = None,
 ) -> Generator[Progress, None, list[PeerRow]]:
-    """Align two sequences of the paper's size with path, ours and the installed peers in turn."""
+    """Align two sequences of the paper's size with path, ours and other libraries in turn.
+
+    Parameters
+    ----------
+    frames
+        Length of both.
+    seed
+        Of the sequences.
+    times
+        Repetitions, of which the best counts.
+    beside
+        The other libraries by name; those that are installed where None.
+    """
+    others = peers() if beside is None else beside
     rng = np.random.default_rng(seed)
     one, other = (
         np.cumsum(rng.normal(0, 0.02, (frames, 3 * KATA_MARKERS)), axis=0) for _ in range(2)
     )
     cost = {"ours": _ours(one, other)}
     best = {"ours": math.inf}
-    for name, peer in peers().items():
+    for name, peer in others.items():
         yield Progress(0.0, f"{name}, once to warm it")
         cost[name], best[name] = peer(one, other)[0], math.inf
     for i in range(times):
@@ -185,7 +202,7 @@ def kata_speed(
             if name == "ours":
                 _ours(one, other)
             else:
-                peers()[name](one, other)
+                others[name](one, other)
             best[name] = min(best[name], time.perf_counter() - begun)
     return [PeerRow(name, best[name], cost[name]) for name in best]
 

@@ -142,6 +142,7 @@ def _difference(axes: Axes, comparison: Comparison, times: _Times, palette: Pale
         here = here | np.concatenate([[False], here[:-1]])
         axes.fill_between(seconds, values, where=list(here), color=value, linewidth=0)
     axes.set_ylim(0, max(float(values.max()) * 1.08, 1e-3))
+    axes.locator_params(axis="y", nbins=4)
     unit = "radians" if comparison.features == "rotations" else "of the unit box"
     _name(axes, "pose difference", unit, palette)
 
@@ -165,8 +166,8 @@ def _misalignment(
     axes.set_ylim(-reach, reach)
     for y, word in ((0.96, "ahead"), (0.04, "behind")):
         axes.text(
-            0.995, y, word, transform=axes.transAxes, ha="right", va="top" if y > 0.5 else "bottom",
-            color=palette.muted, fontsize=9, backgroundcolor=palette.field,
+            0.005, y, word, transform=axes.transAxes, ha="left", va="top" if y > 0.5 else "bottom",
+            color=palette.muted, fontsize=9,
         )  # fmt: skip
     kind = "seconds" if comparison.true_speed else "s, tempo apart"
     _name(axes, "misalignment", kind, palette)
