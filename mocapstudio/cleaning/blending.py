@@ -20,41 +20,6 @@ def savitzky_golay(half: int) -> Array:
     return np.asarray(np.linalg.pinv(basis)[0])
 
 
-def join_rotations(inside: Array, before: Array | None, after: Array | None) -> Array:
-    """Shift a replacement so that it meets what stays at both ends.
-
-    The mismatch at each end is spread over the span as a rotation that fades linearly to the
-    other end; the middle keeps the donor's own motion.
-
-    Parameters
-    ----------
-    inside
-        (n, m, 4) replacement.
-    before, after
-        (2, m, 4): the two frames just before, and just after, the span in the order of time; None
-        at the take's own ends.
-    """
-    n = len(inside)
-    at = (np.arange(n) + 1.0) / (n + 1.0)
-    result = inside
-    if before is not None:
-        start = rot.multiply(inside[:1], rot.conjugate(_forecast(before[1], before[0])[None]))
-        gap = -rot.log(start)[0]
-        fade = (1.0 - at) if after is not None else np.ones(n)
-        result = rot.multiply(rot.exp(fade[:, None, None] * gap), result)
-    if after is not None:
-        end = rot.multiply(inside[-1:], rot.conjugate(_forecast(after[0], after[1])[None]))
-        gap = -rot.log(end)[0]
-        fade = at if before is not None else np.ones(n)
-        result = rot.multiply(rot.exp(fade[:, None, None] * gap), result)
-    return result
-
-
-def _forecast(near: Array, far: Array) -> Array:
-    """Go on by the last step: what the frame next to `near` would be at constant speed."""
-    return rot.multiply(rot.multiply(near, rot.conjugate(far)), near)
-
-
 def smooth_seams(inside: Array, before: Array | None, after: Array | None, half: int) -> Array:
     """Smooth the first and last `half` frames of a replacement with a quadratic filter.
 

@@ -11,12 +11,18 @@ from typing import Any
 import numpy as np
 
 from mocapstudio.cleaning.analysis import Analysis
-from mocapstudio.cleaning.detection import detect
 from mocapstudio.cleaning.model import Flag, Kind, Proposal
 from mocapstudio.cleaning.parameters import DetectionParameters
 from mocapstudio.cleaning.proposals import apply, propose
+from mocapstudio.cleaning.refined import detect_refined
 from mocapstudio.evaluation.cases import Case
-from mocapstudio.evaluation.repair_metrics import EventError, Looks, event_errors, looks
+from mocapstudio.evaluation.repair_metrics import (
+    EventError,
+    Looks,
+    changed_outside,
+    event_errors,
+    looks,
+)
 from mocapstudio.evaluation.repair_peers import PEERS, Peer
 from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.facing import ROOT_HEADING, ROOT_POSITION, ROOT_ROWS
@@ -202,6 +208,8 @@ def _accepted(analysis: Analysis, flags: Iterable[Flag]) -> Repaired:
         proposal = propose(analysis, flag, onto=take)
         take = apply(take, proposal)
         declared += _declared(proposal, hips)
+    outside = changed_outside(analysis.take, take, declared)
+    assert outside == 0, f"{take.name}: {outside} samples changed outside what was declared"
     return Repaired(take, tuple(declared))
 
 
@@ -237,7 +245,7 @@ def repairing(
     rows = {name: RepairScores(name) for name in repairers}
     for i, case in enumerate(cases):
         yield Progress(i / len(cases), f"repairing {case.clean.name}")
-        analysis = run(detect(case.dirty, case.context, parameters))
+        analysis = run(detect_refined(case.dirty, case.context, parameters))
         for name, repairer in repairers.items():
             started = time.perf_counter()
             result = repairer(case, analysis)
@@ -249,7 +257,7 @@ def repairing(
                 looks=(*row.looks, looks(case, result.take, result.declared)),
             )
             if again:
-                second = run(detect(result.take, case.context, parameters))
+                second = run(detect_refined(result.take, case.context, parameters))
                 flags = (*rows[name].still_flagged, len(second.flags))
                 rows[name] = replace(rows[name], still_flagged=flags)
     return list(rows.values())

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from scipy.signal import savgol_coeffs, savgol_filter
 
-from mocapstudio.cleaning.blending import join_rotations, savitzky_golay, smooth_seams
+from mocapstudio.cleaning.blending import savitzky_golay, smooth_seams
 from mocapstudio.motion import rotations as rot
 
 
@@ -23,29 +21,6 @@ def spin(frames: int, first: float = 0.0, speed: float = 0.05) -> np.ndarray:
 def test_the_smoother_is_scipys(half: int) -> None:
     expected = savgol_coeffs(2 * half + 1, 2, use="dot")
     np.testing.assert_allclose(savitzky_golay(half), expected, atol=1e-12)
-
-
-def test_what_fits_already_stays_as_it_is() -> None:
-    whole = spin(30)
-    joined = join_rotations(whole[10:20], whole[8:10], whole[20:22])
-    assert rot.angle(joined, whole[10:20]).max() < 1e-6
-
-
-@given(st.integers(4, 40), st.floats(-2.5, 2.5), st.integers(0, 1000))
-def test_a_mismatch_fades_over_the_span(frames: int, off: float, seed: int) -> None:
-    axis = np.random.default_rng(seed).normal(size=3)
-    turn = rot.from_rotation_vector(off * axis / np.linalg.norm(axis))
-    whole = spin(frames + 20)
-    inside = rot.multiply(turn, whole[10 : frames + 10])
-    joined = join_rotations(inside, whole[8:10], whole[frames + 10 : frames + 12])
-    left = rot.angle(joined, whole[10 : frames + 10])
-    # A turn of the donor as a whole is taken off; at either end a small share of it remains.
-    assert left[[0, -1]].max() <= 2.5 * abs(off) / (frames + 1) + 1e-6
-    before = join_rotations(inside, whole[8:10], None)
-    assert rot.angle(before, whole[10 : frames + 10]).max() < 1e-6
-    after = join_rotations(inside, None, whole[frames + 10 : frames + 12])
-    assert rot.angle(after, whole[10 : frames + 10]).max() < 1e-6
-    np.testing.assert_array_equal(join_rotations(inside, None, None), inside)
 
 
 def test_the_seams_alone_are_smoothed() -> None:
@@ -77,5 +52,3 @@ def test_signs_do_not_matter() -> None:
     signs = np.random.default_rng(1).choice([-1.0, 1.0], (20, 2, 1))
     smooth = smooth_seams(signs * whole[10:30], whole[:10], whole[30:], 3)
     np.testing.assert_allclose(smooth, smooth_seams(whole[10:30], whole[:10], whole[30:], 3))
-    joined = join_rotations(signs * whole[10:30], whole[8:10], whole[30:32])
-    assert rot.angle(joined, whole[10:30]).max() < 1e-6

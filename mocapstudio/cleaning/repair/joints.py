@@ -12,7 +12,7 @@ from mocapstudio.cleaning.blending import smooth_seams
 from mocapstudio.cleaning.model import Flag, Neighbour, Proposal
 from mocapstudio.cleaning.repair import kriging
 from mocapstudio.cleaning.repair.donors import aligned, sample_rotations, take_of
-from mocapstudio.cleaning.repair.estimate import Span, estimate
+from mocapstudio.cleaning.repair.estimate import Estimate, Span, estimate
 from mocapstudio.cleaning.repair.group import together
 from mocapstudio.cleaning.repair.kriging import OF_PREDICTED
 from mocapstudio.cleaning.repair.material import Material, is_repaired, material
@@ -62,27 +62,30 @@ def propose_joints(analysis: Analysis, flag: Flag, take: Take, donor: Neighbour 
         start, end = padded(take, flag)
         kept = take.rotations[start:end, [take.skeleton.index[flag.joint]]].copy()
         return Proposal((flag.joint,), start, end, kept, None, PREDICTION)
-    spans = _spans(take, together(analysis, flag, take))
     known = material(analysis, flag, take)
+    flags = together(analysis, flag, take)
+    spans = _spans(take, flags)
     if donor is not None:
         found = [_of_donor(analysis, flag, known, donor, joint, spans) for joint in spans]
-        method = NEIGHBOURS
-    else:
-        columns = [known.joints.index(joint) for joint in spans]
-        first = known.motion.start
-        inner = [(start - first, end - first) for start, end in spans.values()]
-        pad = max(1, round(PAD_SECONDS * float(take.rate)))
-        guesses = estimate(known, columns, inner, pad)
-        method = PREDICTION if max(one.share for one in guesses) > 0.0 else INTERPOLATION
-        found = [one.rotations for one in guesses]
-        back = _exchanged_back(known, spans, found)
+        return _proposal(analysis, known, spans, found, NEIGHBOURS, donor)
+    wider = together(analysis, flag, take, both_sides=True)
+    if has_two_sides(take.skeleton, [take.skeleton.index[one.joint] for one in wider]):
+        sides = _spans(take, wider)
+        back = _exchanged_back(known, sides, [one.rotations for one in _guessed(known, sides)])
         if back is not None:
-            found, method = back, SWAP
-    found = [
-        within(known, column, one, joint_ranges(known, analysis.context, column))
-        for one, column in zip(found, [known.joints.index(j) for j in spans], strict=True)
-    ]
-    return _proposal(take, spans, found, method, donor)
+            return _proposal(analysis, known, sides, back, SWAP, None)
+    guesses = _guessed(known, spans)
+    method = PREDICTION if max(one.share for one in guesses) > 0.0 else INTERPOLATION
+    return _proposal(analysis, known, spans, [one.rotations for one in guesses], method, None)
+
+
+def _guessed(known: Material, spans: dict[str, Span]) -> list[Estimate]:
+    """Estimates of all joints, each over its span in frames of the take."""
+    first = known.motion.start
+    columns = [known.joints.index(joint) for joint in spans]
+    inner = [(start - first, end - first) for start, end in spans.values()]
+    pad = max(1, round(PAD_SECONDS * known.motion.rate))
+    return estimate(known, columns, inner, pad)
 
 
 def _spans(take: Take, flags: Sequence[Flag]) -> dict[str, Span]:
@@ -97,19 +100,26 @@ def _spans(take: Take, flags: Sequence[Flag]) -> dict[str, Span]:
 
 
 def _proposal(
-    take: Take,
+    analysis: Analysis,
+    known: Material,
     spans: dict[str, Span],
     found: Sequence[F64],
     method: str,
     donor: Neighbour | None,
 ) -> Proposal:
-    """Lay each joint's samples into one block; outside its own span a joint stays as it is."""
+    """Lay each joint's samples, kept in its ranges, into one block.
+
+    Outside its own span a joint stays as it is.
+    """
+    take = known.take
     start = min(one[0] for one in spans.values())
     end = max(one[1] for one in spans.values())
-    columns = [take.skeleton.index[name] for name in spans]
-    block = take.rotations[start:end, columns].copy()
+    block = take.rotations[start:end, [take.skeleton.index[name] for name in spans]].copy()
     hips = take.skeleton.names[topology(take.skeleton).hips]
-    for i, ((name, (low, high)), rotations) in enumerate(zip(spans.items(), found, strict=True)):
+    for i, ((name, (low, high)), one) in enumerate(zip(spans.items(), found, strict=True)):
+        column = known.joints.index(name)
+        ranges = joint_ranges(known, analysis.context, column)
+        rotations = within(known, column, one, ranges)
         local = hips_rotation(take, rotations, low, high) if name == hips else rotations
         block[low - start : high - start, i] = local
     return Proposal(tuple(spans), start, end, block, None, method, donor)
