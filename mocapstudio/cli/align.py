@@ -53,7 +53,10 @@ def align(
     ] = False,
     paper: Annotated[
         bool,
-        typer.Option("--paper", help="Compare poses alone, as the paper does, not their motion."),
+        typer.Option(
+            "--paper",
+            help="As the paper does: poses alone, not their motion; paths weighted by length.",
+        ),
     ] = False,
     *,
     reading: TakeOptions,
@@ -89,7 +92,7 @@ def align(
 
 
 def _one(work: Workload, path: Path) -> Recording:
-    from mocapstudio.cli.compare import read_recordings
+    from mocapstudio.cli.comparison_job import read_recordings
 
     found = read_recordings(work, path)
     if len(found) > 1:
@@ -118,13 +121,16 @@ def _prepared(
     paper: bool,
 ) -> LiveAlignment:
     from mocapstudio.comparison.live import LiveAlignment
-    from mocapstudio.comparison.online import OnlineAligner
+    from mocapstudio.comparison.online import OnlineAligner, Variant
     from mocapstudio.comparison.online_reference import reference_of
 
     motion = learnt.motion if learnt is not None else not paper
     reference = reference_of(take, streams, rate, motion=motion)
     chosen = learnt.fitting(reference) if learnt is not None else None
-    return LiveAlignment(OnlineAligner(reference, chosen, labels=labels), wait=wait)
+    variant = Variant.PATH_LENGTH if paper else Variant.PLAIN
+    if learnt is not None:
+        variant = learnt.variant
+    return LiveAlignment(OnlineAligner(reference, chosen, variant, labels), wait=wait)
 
 
 def _from_input(

@@ -28,6 +28,7 @@ class What(StrEnum):
     DETECTION = "detection"
     REPAIR = "repair"
     CONTACTS = "contacts"
+    ALIGNMENT = "alignment"
     SPEED = "speed"
 
 
@@ -56,6 +57,12 @@ def evaluate(
         Path | None,
         typer.Option("--cleaned", metavar="TAKE", help="Score against a version cleaned by hand."),
     ] = None,
+    labels: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--labels", metavar="FILE", help="Of alignment: segments of takes (JSON); repeatable."
+        ),
+    ] = None,
     context: Annotated[
         list[Size] | None,
         typer.Option("--context", help="Size of context; repeatable. All three by default."),
@@ -68,7 +75,7 @@ def evaluate(
         Path | None, typer.Option("--html", metavar="PATH", help="Write a page with pictures.")
     ] = None,
 ) -> None:
-    """Measure detection, repair, contacts or speed on your own takes.
+    """Measure detection, repair, contacts, alignment or speed on your own takes.
 
     Errors of known place and shape are injected into the takes, which should be clean; what was
     tuned, was tuned on other takes than those measured.
@@ -78,16 +85,13 @@ def evaluate(
 
     check_writable(json_path)
     check_writable(html_path)
-    if truth is not None and cleaned is not None:
-        raise MocapError("--truth and --cleaned exclude each other")
-    if cleaned is not None and what is What.SPEED:
-        raise MocapError("speed has no truth to be scored against")
-    if cleaned is not None and what is What.CONTACTS:
-        raise MocapError("contacts are measured against --truth")
-    if truth is not None and what not in {What.DETECTION, What.CONTACTS}:
-        raise MocapError("labels tell where errors are, not what would be right: use --cleaned")
+    _check_use(what, truth, cleaned, labels)
     sizes = _sizes(context)
-    if what is What.CONTACTS:
+    if what is What.ALIGNMENT:
+        from mocapstudio.evaluation import alignment_report
+
+        work = alignment_report.alignment(data, labels or (), seed, limit, brief=brief)
+    elif what is What.CONTACTS:
         from mocapstudio.evaluation import contacts_report
 
         work = contacts_report.contacts(data, truth, seed, limit)
@@ -107,6 +111,21 @@ def evaluate(
     write_json(_with_provenance(report.record, data, seed), json_path)
     if html_path is not None:
         _write(report.html, html_path)
+
+
+def _check_use(
+    what: What, truth: Path | None, cleaned: Path | None, labels: list[Path] | None
+) -> None:
+    if truth is not None and cleaned is not None:
+        raise MocapError("--truth and --cleaned exclude each other")
+    if cleaned is not None and what in {What.SPEED, What.ALIGNMENT}:
+        raise MocapError(f"{what.value} has no cleaned take to be scored against")
+    if cleaned is not None and what is What.CONTACTS:
+        raise MocapError("contacts are measured against --truth")
+    if truth is not None and what not in {What.DETECTION, What.CONTACTS}:
+        raise MocapError("labels tell where errors are, not what would be right: use --cleaned")
+    if labels and what is not What.ALIGNMENT:
+        raise MocapError("--labels are of segments, which only alignment is measured by")
 
 
 def _sizes(context: list[Size] | None) -> Sequence[ContextSize]:

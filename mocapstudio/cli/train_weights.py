@@ -94,7 +94,7 @@ def _labelled(
 ) -> list[LabelledTake]:
     """Return the labelled actions of a file; a take that repeats its action gives several."""
     from mocapstudio.cli.align import renamed
-    from mocapstudio.cli.compare import read_recordings
+    from mocapstudio.cli.comparison_job import read_recordings
     from mocapstudio.comparison.labels import labels_of
     from mocapstudio.comparison.weights_examples import LabelledTake, repetitions
 

@@ -164,8 +164,8 @@ class LiveAlignment:
         return Note.BRIDGED if missing else None
 
 
-def played(live: LiveAlignment, take: Recording) -> Iterator[LiveState]:
-    """Feed a take's trimmed span as if it arrived now, a state a frame.
+def played(live: LiveAlignment, take: Recording, every: int = 1) -> Iterator[LiveState]:
+    """Feed a take's trimmed span as if it arrived now, a state for every n-th frame.
 
     Raises
     ------
@@ -173,5 +173,5 @@ def played(live: LiveAlignment, take: Recording) -> Iterator[LiveState]:
         If the take lacks what is compared.
     """
     poses = live.aligner.reference.features.of(take)
-    for i, pose in enumerate(poses):
-        yield live.feed(pose, take.seconds(i))
+    for i in range(0, len(poses), every):
+        yield live.feed(poses[i], take.seconds(i))

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from mocapstudio.comparison.online import Variant
 from mocapstudio.comparison.online_reference import MOTION, Reference
 from mocapstudio.formats.atomic import write_whole
 from mocapstudio.motion.errors import FileError, MocapError, ParameterError, SkeletonMismatchError
@@ -50,6 +51,8 @@ class JointWeights:
     ----------
     weights
         At least 0.
+    variant
+        How paths are accumulated with them.
     reference
         Name of the take they were learnt for.
     folds
@@ -59,6 +62,7 @@ class JointWeights:
     """
 
     weights: Mapping[str, float]
+    variant: Variant = Variant.PLAIN
     reference: str = ""
     folds: tuple[FoldQuality, ...] = ()
     provenance: Mapping[str, Any] = field(default_factory=dict)
@@ -67,6 +71,7 @@ class JointWeights:
         """Plain objects for JSON."""
         return {
             "reference": self.reference,
+            "variant": self.variant.value,
             "weights": dict(self.weights),
             "folds": [fold.to_json() for fold in self.folds],
             "provenance": dict(self.provenance),
@@ -152,7 +157,8 @@ def _from_json(content: Any) -> JointWeights:
         for one in content.get("folds", ())
     )
     provenance = dict(content.get("provenance", {}))
-    return JointWeights(weights, str(content.get("reference", "")), folds, provenance)
+    variant = Variant(content.get("variant", Variant.PLAIN))
+    return JointWeights(weights, variant, str(content.get("reference", "")), folds, provenance)
 
 
 def _said(cause: Exception) -> str:

@@ -76,7 +76,7 @@ class Trials:
         self._kept = [self._distances(one) for one in self.examples] if fits else None
 
     def qualities(
-        self, weights: F32, variant: Variant = Variant.PATH_LENGTH, *, closed: bool = False
+        self, weights: F32, variant: Variant = Variant.PLAIN, *, closed: bool = False
     ) -> F64:
         """Qualities (N, P, K) of N examples under P sets of weights after K shares.
 

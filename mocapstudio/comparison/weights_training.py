@@ -41,12 +41,13 @@ class TrainingParameters:
         Of each iteration.
     folds
         Of the cross-validation, at most as many as there are performers; 0 for none.
-    variant
-        How paths are accumulated.
+    variants
+        Ways of accumulating paths, among which one is chosen.
     shares
         Shares of the movement seen over which the quality is averaged.
     stiffness
-        What the mean squared distance of the weights from where they began costs, in quality.
+        What the mean squared distance of the weights from where they began costs, in quality,
+        divided by the number of examples: the fewer there are, the less is to be believed.
     motion_starts
         Weights of motion rows, against 1 of poses, among which the start is chosen; only looked
         at where the reference has such rows.
@@ -61,9 +62,9 @@ class TrainingParameters:
     parents: int = 6
     offspring: int = 12
     folds: int = 5
-    variant: Variant = Variant.PATH_LENGTH
+    variants: tuple[Variant, ...] = (Variant.PLAIN, Variant.PATH_LENGTH)
     shares: tuple[float, ...] = SHARES
-    stiffness: float = 0.02
+    stiffness: float = 0.4
     motion_starts: tuple[float, ...] = (0.0, 1.0, MOTION_WEIGHT, 2 * MOTION_WEIGHT)
     variance_start: bool = True
     seed: int = 0
@@ -75,8 +76,29 @@ class TrainingParameters:
             raise ParameterError("there must be at least two offspring, and no more parents")
 
 
-PAPER = TrainingParameters(stiffness=0.0, motion_starts=(1.0,), variance_start=False)
+PAPER = TrainingParameters(
+    stiffness=0.0,
+    variants=(Variant.PATH_LENGTH,),
+    motion_starts=(1.0,),
+    variance_start=False,
+)
 """Paper 3 to the letter, for references without motion."""
+
+
+@dataclass(frozen=True, eq=False)
+class Learnt:
+    """What the evolution came to.
+
+    Parameters
+    ----------
+    weights
+        (N,) with a mean of 1.
+    variant
+        How paths are to be accumulated with them.
+    """
+
+    weights: F32
+    variant: Variant
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,13 +111,13 @@ class Fold:
         In numbers.
     tested
         Indices of the examples left out.
-    weights
-        (D,) learnt without them.
+    learnt
+        Without them.
     """
 
     quality: FoldQuality
     tested: tuple[int, ...]
-    weights: F32
+    learnt: Learnt
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,25 +169,26 @@ def training(
         raise MocapError("no labelled take to learn weights from")
     folds = []
     groups = folds_of(examples, parameters.folds, parameters.seed)
-    steps = len(groups) + 1
+    size = 1 / (len(groups) + 1)
     for i, tested in enumerate(groups):
-        kept = [k for k in range(len(examples)) if k not in tested]
-        learning = _evolving(reference, segments, [examples[k] for k in kept], parameters)
-        weights = yield from _part(learning, i / steps, 1 / steps, f"fold {i + 1}")
-        trials = Trials(reference, segments, [examples[k] for k in tested], parameters.shares)
-        left_out = _mean_quality(trials, np.stack([weights, reference.plain_weights]), parameters)
-        seen = Trials(reference, segments, [examples[k] for k in kept], parameters.shares)
-        trained = _mean_quality(seen, weights[None], parameters)
-        performers = tuple(dict.fromkeys(examples[k].performer for k in tested))
-        found = FoldQuality(performers, float(trained[0]), float(left_out[0]), float(left_out[1]))
-        folds.append(Fold(found, tested, weights))
-    learning = _evolving(reference, segments, examples, parameters)
-    weights = yield from _part(learning, 1 - 1 / steps, 1 / steps, "all takes")
-    trials = Trials(reference, segments, examples, parameters.shares)
-    quality = float(_mean_quality(trials, weights[None], parameters)[0])
-    named = dict(zip(reference.names, map(float, weights), strict=True))
-    learnt = JointWeights(named, reference.name, tuple(fold.quality for fold in folds))
-    return Training(learnt, tuple(folds), quality)
+        kept = [examples[k] for k in range(len(examples)) if k not in tested]
+        learning = evolved(reference, segments, kept, parameters)
+        learnt = yield from as_part(learning, i * size, size, f"fold {i + 1}")
+        left_out = [examples[k] for k in tested]
+        quality = FoldQuality(
+            tuple(dict.fromkeys(one.performer for one in left_out)),
+            _quality(reference, segments, kept, learnt, parameters),
+            _quality(reference, segments, left_out, learnt, parameters),
+            _quality(reference, segments, left_out, _unlearnt(reference), parameters),
+        )
+        folds.append(Fold(quality, tested, learnt))
+    learning = evolved(reference, segments, examples, parameters)
+    learnt = yield from as_part(learning, 1 - size, size, "all takes")
+    named = dict(zip(reference.names, map(float, learnt.weights), strict=True))
+    found = tuple(fold.quality for fold in folds)
+    weights = JointWeights(named, learnt.variant, reference.name, found)
+    overall = _quality(reference, segments, examples, learnt, parameters)
+    return Training(weights, tuple(folds), overall)
 
 
 def evolved(
@@ -173,9 +196,42 @@ def evolved(
     segments: I32,
     examples: Sequence[Example],
     parameters: TrainingParameters = TrainingParameters(),
-) -> Generator[Progress, None, F32]:
-    """Learn weights (D,) with a mean of 1 from examples, without cross-validation."""
-    return (yield from _evolving(reference, segments, examples, parameters))
+) -> Generator[Progress, None, Learnt]:
+    """Learn weights from examples, without cross-validation."""
+    import cma
+
+    trials = Trials(reference, segments, examples, parameters.shares)
+    price = parameters.stiffness / len(examples)
+    # The threads of the pool already fill the cores.
+    with threadpool_limits(1, "blas"):
+        starts = _starts(reference, examples, parameters)
+        tried = [_mean_qualities(trials, starts, variant) for variant in parameters.variants]
+        best, at = np.unravel_index(int(np.argmax(tried)), np.shape(tried))
+        variant, start = parameters.variants[int(best)], starts[int(at)]
+        strategy = cma.CMAEvolutionStrategy(start, parameters.step, _options(parameters))
+        while not strategy.stop():
+            yield Progress(strategy.countiter / parameters.iterations, "evolving")
+            asked = np.array(strategy.ask())
+            weights = np.maximum(asked, 0.0)
+            quality = _mean_qualities(trials, weights, variant)
+            paid = price * np.mean((weights - start) ** 2, axis=1)
+            strategy.tell(list(asked), list(1.0 - quality + paid))
+    return Learnt(_used(strategy.result.xfavorite), variant)
+
+
+def _options(parameters: TrainingParameters) -> dict[str, float]:
+    return {
+        "popsize": parameters.offspring,
+        "CMA_mu": parameters.parents,
+        "maxiter": parameters.iterations,
+        "seed": parameters.seed + 1,
+        "verbose": -9,
+        # Quality is a staircase: to stand on a step for long is no reason to stop.
+        "tolfun": 0,
+        "tolfunhist": 0,
+        "tolflatfitness": parameters.iterations + 1,
+        "tolstagnation": parameters.iterations + 1,
+    }
 
 
 def folds_of(examples: Sequence[Example], folds: int, seed: int) -> list[tuple[int, ...]]:
@@ -200,42 +256,6 @@ def folds_of(examples: Sequence[Example], folds: int, seed: int) -> list[tuple[i
         tuple(k for k, performer in enumerate(performers) if fold[performer] == i)
         for i in range(count)
     ]
-
-
-def _evolving(
-    reference: Reference,
-    segments: I32,
-    examples: Sequence[Example],
-    parameters: TrainingParameters,
-) -> Generator[Progress, None, F32]:
-    import cma
-
-    trials = Trials(reference, segments, examples, parameters.shares)
-    options = {
-        "popsize": parameters.offspring,
-        "CMA_mu": parameters.parents,
-        "maxiter": parameters.iterations,
-        "seed": parameters.seed + 1,
-        "verbose": -9,
-        # Quality is a staircase: to stand on a step for long is no reason to stop.
-        "tolfun": 0,
-        "tolfunhist": 0,
-        "tolflatfitness": parameters.iterations + 1,
-        "tolstagnation": parameters.iterations + 1,
-    }
-    # The threads of the pool already fill the cores.
-    with threadpool_limits(1, "blas"):
-        starts = _starts(reference, examples, parameters)
-        start = starts[int(np.argmax(_mean_quality(trials, starts, parameters)))]
-        strategy = cma.CMAEvolutionStrategy(start, parameters.step, options)
-        while not strategy.stop():
-            yield Progress(strategy.countiter / parameters.iterations, "evolving")
-            asked = np.array(strategy.ask())
-            weights = np.maximum(asked, 0.0)
-            quality = _mean_quality(trials, weights, parameters)
-            price = parameters.stiffness * np.mean((weights - start) ** 2, axis=1)
-            strategy.tell(list(asked), list(1.0 - quality + price))
-    return _used(strategy.result.xfavorite)
 
 
 def _starts(
@@ -263,19 +283,35 @@ def _used(weights: F64 | F32) -> F32:
     return np.asarray(positive / mean if mean > 0 else np.ones_like(positive), dtype=np.float32)
 
 
-def _mean_quality(trials: Trials, weights: F32, parameters: TrainingParameters) -> F64:
-    """(P,) mean over examples and shares."""
-    qualities = trials.qualities(weights, parameters.variant)
-    return np.asarray(qualities.mean(axis=(0, 2)))
+def _mean_qualities(trials: Trials, weights: F64 | F32, variant: Variant) -> F64:
+    """(P,) mean over examples and shares of P sets of weights."""
+    found = trials.qualities(np.asarray(weights, dtype=np.float32), variant)
+    return np.asarray(found.mean(axis=(0, 2)))
 
 
-def _part(
-    work: Generator[Progress, None, F32], low: float, size: float, what: str
-) -> Generator[Progress, None, F32]:
+def _quality(
+    reference: Reference,
+    segments: I32,
+    examples: Sequence[Example],
+    learnt: Learnt,
+    parameters: TrainingParameters,
+) -> float:
+    trials = Trials(reference, segments, examples, parameters.shares)
+    return float(_mean_qualities(trials, learnt.weights[None], learnt.variant)[0])
+
+
+def _unlearnt(reference: Reference) -> Learnt:
+    return Learnt(reference.plain_weights, Variant.PLAIN)
+
+
+def as_part(
+    work: Generator[Progress, None, Learnt], low: float, size: float, what: str
+) -> Generator[Progress, None, Learnt]:
+    """Pass the progress of a part of the work on as progress of the whole, named `what`."""
     while True:
         try:
             progress = next(work)
         except StopIteration as stop:
-            result: F32 = stop.value
+            result: Learnt = stop.value
             return result
         yield Progress(low + size * progress.done, what)

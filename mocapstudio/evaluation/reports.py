@@ -182,12 +182,13 @@ def _report(
     )
     body = [*parts, *(page.table_html(table) for table in tables)]
     html = page.page(f"mocapstudio: {title.lower()}", lead, body, "mocapstudio evaluate")
-    return Report(_without_nan(record), tuple(tables), html)
+    return Report(without_nan(record), tuple(tables), html)
 
 
-def _without_nan(value: Any) -> Any:
+def without_nan(value: Any) -> Any:
+    """Put None in the place of every NaN of plain objects: JSON has none."""
     if isinstance(value, dict):
-        return {key: _without_nan(one) for key, one in value.items()}
+        return {key: without_nan(one) for key, one in value.items()}
     if isinstance(value, list | tuple):
-        return [_without_nan(one) for one in value]
+        return [without_nan(one) for one in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,71 @@
+"""The pictures of online alignment: quality over the share of the movement seen."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Mapping, Sequence
+
+from mocapstudio.comparison.online_features import F64
+
+# Okabe and Ito's colours, distinct to the colour-blind; a method keeps its own in all figures.
+_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c8c8c", "#117733")
+_WIDTH, _HEIGHT, _LEFT, _TOP, _BOTTOM, _RIGHT = 380, 330, 44, 30, 44, 14
+_LINE = 15
+
+
+def share_curves(
+    title: str, shares: Sequence[float], curves: Mapping[str, F64], methods: Sequence[str]
+) -> str:
+    """Draw quality (0..1) over the share of the movement seen, a line a method.
+
+    Parameters
+    ----------
+    shares
+        K, in 0..1.
+    curves
+        (K,) values of each line.
+    methods
+        All methods in their order, which tells a line's colour.
+    """
+    lowest = min(float(curve.min()) for curve in curves.values())
+    low = max(0.0, min(0.9, (int(lowest * 20)) / 20))
+    wide, high = _WIDTH - _LEFT - _RIGHT, _HEIGHT - _TOP - _BOTTOM - _LINE * len(curves)
+
+    def x(share: float) -> float:
+        return _LEFT + share * wide
+
+    def y(quality: float) -> float:
+        return _TOP + (1 - (quality - low) / (1 - low)) * high
+
+    parts = [f'<text class="name" x="{_LEFT}" y="14">{html.escape(title)}</text>']
+    for i in range(5):
+        quality = low + (1 - low) * i / 4
+        parts.append(
+            f'<path class="axis" fill="none" d="M{_LEFT},{y(quality):.1f}h{wide}"/>'
+            f'<text x="{_LEFT - 6}" y="{y(quality) + 4:.1f}" text-anchor="end">'
+            f"{100 * quality:.0f}</text>"
+        )
+    parts += [
+        f'<path class="axis" fill="none" d="M{x(share):.1f},{_TOP}v{high}"/>'
+        f'<text x="{x(share):.1f}" y="{_TOP + high + 15}" text-anchor="middle">'
+        f"{100 * share:.0f} %</text>"
+        for share in (0.2, 0.4, 0.6, 0.8, 1.0)
+    ]
+    for i, (name, curve) in enumerate(curves.items()):
+        colour = _COLOURS[methods.index(name) % len(_COLOURS)]
+        points = " ".join(
+            f"{x(share):.1f},{y(float(value)):.1f}"
+            for share, value in zip(shares, curve, strict=True)
+        )
+        line = _HEIGHT - 6 - _LINE * (len(curves) - 1 - i)
+        parts.append(
+            f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="2"/>'
+            f'<path d="M{_LEFT},{line - 4}h18" stroke="{colour}" stroke-width="3"/>'
+            f'<text x="{_LEFT + 24}" y="{line}">{html.escape(name)}, mean'
+            f" {100 * float(curve.mean()):.1f}</text>"
+        )
+    caption = "quality in % over the share of the movement seen"
+    return (
+        f'<figure><svg viewBox="0 0 {_WIDTH} {_HEIGHT}" width="{_WIDTH}" height="{_HEIGHT}">'
+        f"{''.join(parts)}</svg><figcaption>{caption}</figcaption></figure>"
+    )
