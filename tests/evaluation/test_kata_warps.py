@@ -85,6 +85,8 @@ def test_libraries_agree_on_the_cost_and_tables_name_them() -> None:
         assert row.cost == pytest.approx(rows[0].cost, rel=1e-4)
     warps = [WarpRow("ours", "noise", 3, 0.5, 0.7, 2.0)]
     boundaries = [BoundaryRow("squats", 1, 10, 0.1, 0.3, 0.8)]
-    tables = kata_tables(warps, [PeerRow("ours", 0.02, 1.0), PeerRow("x", 0.2, 1.0)], boundaries)
+    tables = kata_tables(
+        warps, [PeerRow("ours", 0.02, 0.03, 1.0), PeerRow("x", 0.2, 0.2, 1.0)], boundaries
+    )
     assert [len(table.rows) for table in tables] == [1, 2, 1]
     assert "10.0 ×" in tables[1].rows[1]
