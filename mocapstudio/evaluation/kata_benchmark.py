@@ -198,7 +198,7 @@ def kata_speed(
     for name, action in work.items():
         yield Progress(0.0, f"{name}, once to warm it")
         cost[name] = action()
-    best = {name: (math.inf, math.inf) for name in work}
+    best = dict.fromkeys(work, (math.inf, math.inf))
     for i in range(times):
         yield Progress(i / times, "aligning")
         for name, action in work.items():
@@ -297,7 +297,9 @@ def kata_tables(
             (
                 row.name,
                 f"{1e3 * row.seconds:.0f} ms",
-                f"{row.seconds / ours:.1f} ×",
+                f"{row.seconds / ours.seconds:.1f} ×",
+                f"{1e3 * row.cpu:.0f} ms",
+                f"{row.cpu / ours.cpu:.1f} ×",
                 f"{row.cost:.2f}",
             )
             for row in speed
