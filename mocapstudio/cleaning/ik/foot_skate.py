@@ -167,7 +167,7 @@ def _solve_window(
         problem = windows.problem(
             take, inside, span, ranges, parameters.easing, parameters.root_reach, weight
         )
-        solution = solve(problem, start, tolerance=windows.TOLERANCE)
+        solution = solve(problem, start, tolerance=windows.TOLERANCE, smallest=windows.SMALLEST)
         start = solution.unknowns
         if weight < windows.CONTACT_WEIGHTS[-1]:
             posed = problem.posed(start)

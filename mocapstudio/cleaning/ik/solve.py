@@ -89,6 +89,7 @@ def solve(
     start: Array | None = None,
     most_steps: int = 30,
     tolerance: float = 1e-5,
+    smallest: float = 0.0,
 ) -> Solution:
     """Minimise the sum of squares.
 
@@ -102,6 +103,8 @@ def solve(
         Bound on the linear systems solved.
     tolerance
         Relative fall of the cost below which it is settled.
+    smallest
+        Radians and metres: a step in which no unknown changes by more is the last.
     """
     frames, size = problem.window.frames, problem.freedom.size
     unknowns = np.zeros((frames, size)) if start is None else start
@@ -126,7 +129,7 @@ def solve(
         if fall < 0:
             return Solution(unknowns, now, step, True)
         unknowns, now = unknowns + move, now - fall
-        if fall <= tolerance * now:
+        if fall <= tolerance * now or np.abs(move).max() <= smallest:
             return Solution(unknowns, now, step, True)
         damping *= max(1.0 / 3.0, 1.0 - (2.0 * fall / expected - 1.0) ** 3)
         growth = 2.0

@@ -26,7 +26,8 @@ Array = NDArray[np.float64]
 
 CONTACT_WEIGHTS = (2e2, 4e5)
 """Per metre, growing: at first contacts on one foot find places that agree, at last they hold."""
-TOLERANCE = 5e-4
+TOLERANCE, SMALLEST = 5e-4, 1.5e-3
+"""When a window counts as solved: a tenth of a degree is not seen."""
 _LIMIT_WEIGHT = 30.0
 _TURN_WEIGHT = 2.0
 """Per radian: feet and hands in contact keep their direction rather than their angle."""
