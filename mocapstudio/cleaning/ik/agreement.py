@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 _TOGETHER = 100.0
 """A frame in which two points stand together counts this much for the way between them, against 1
 for where each of them was."""
-_ALONG = 0.02
+_ALONG = 0.05
 """Share of a hold that remains along the line to a point that stands longer."""
 _APART = 0.005
 """Metres: points of one foot nearer than this are one point."""
