@@ -36,7 +36,7 @@ class Note(StrEnum):
     BRIDGED = "bridged"
     """Frames were missing before it, and were interpolated."""
     GAP = "gap"
-    """So many frames were missing before it that none were made up."""
+    """So many frames were missing before it that none were made up; she may have gone on."""
     RESTARTED = "restarted"
     """The stream's clock was set back: the alignment begins anew with this frame."""
 
@@ -150,14 +150,15 @@ class LiveAlignment:
         gap = time - self._time
         if gap <= _GAP * step:
             return None
+        missing = round(gap / step) - 1
         if gap > BRIDGED_SECONDS:
+            self.aligner.pass_over(missing)
             return Note.GAP
         before = self._pose
         flipped = np.sum(before * pose, axis=-1, keepdims=True) < 0
         after = (
             pose if self.aligner.reference.features.directions else np.where(flipped, -pose, pose)
         )
-        missing = round(gap / step) - 1
         for i in range(1, missing + 1):
             part = np.float32(i / (missing + 1))
             self._passed_on(unit_rows(before * (1 - part) + after * part), self._time + i * step)

@@ -124,6 +124,7 @@ class OnlineAligner:
         """Forget the stream: the next frame is the first of an action."""
         self.frames = 0
         self._fed = 0
+        self._resumed = False
         self._turn: F32 | None = None
         self._past: deque[tuple[float, F32]] = deque(maxlen=_PAST)
         self._began: float | None = None
@@ -171,6 +172,22 @@ class OnlineAligner:
             self._began = time
         self.frames += 1
         return self._step(float(costs[self._end]), now, time)
+
+    def pass_over(self, frames: int) -> None:
+        """Let frames pass of which nothing is known: to stand and to go on are equally likely.
+
+        All poses cost what the path cost so far, a frame. It makes no difference before the
+        first frame.
+        """
+        if self.frames == 0:
+            return
+        now = self._rows[self.frames % 2]
+        usual = now[0, self._end] / now[1, self._end]
+        nothing = np.full(len(self.reference), usual, np.float32)
+        for _ in range(min(frames, len(self.reference))):
+            self.feed_costs(nothing)
+        self._past.clear()
+        self._resumed = True
 
     def path(self) -> NDArray[np.int64]:
         """(P, 2) pairs of frames, of the reference at the rate of alignment and of the stream.
@@ -224,6 +241,9 @@ class OnlineAligner:
         rows[: len(pose)] = pose
         directions = self.reference.features.directions
         kernels.displacements(past[0][1], rows[: len(pose)], directions, rows[len(pose) :])
+        self._resumed &= past[0][0] > now - lag + _SAME_TIME
+        if self._resumed:
+            rows[len(pose) :] = np.nan
         return rows
 
     def _is_seen(self, pose: F32) -> bool:

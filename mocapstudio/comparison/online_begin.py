@@ -17,7 +17,7 @@ from mocapstudio.comparison.online import AlignmentStep, OnlineAligner
 from mocapstudio.comparison.online_features import F32, F64
 from mocapstudio.comparison.online_reference import MOTION_SECONDS, with_motion
 
-_STILL_SHARE = 0.2
+_STILL_SHARE = 0.25
 _STILL_SECONDS = 0.3
 _CONFIRM_SECONDS = 0.1
 _END_SHARE = 0.05
@@ -68,7 +68,9 @@ class ActionFollower:
         reference = aligner.reference
         rate, poses = reference.rate, reference.rows[:, : len(reference.features.names)]
         self._speeds = _speeds(poses, rate, reference.features.directions)
-        self._still = _STILL_SHARE * float(np.quantile(self._speeds, 0.9))
+        slowest, fastest = np.quantile(self._speeds, [0.05, 0.9])
+        # Jitter is no movement: what counts as still depends on how still the reference can be.
+        self._still = float(slowest + _STILL_SHARE * (fastest - slowest))
         moving = np.flatnonzero(self._speeds > self._still)
         self._onset = int(moving[0]) if len(moving) else 0
         self._last_moving = int(moving[-1]) if len(moving) else len(reference) - 1
@@ -95,9 +97,10 @@ class ActionFollower:
     def feed(self, pose: F32, time: float | None, frame: int) -> FollowerState:
         """Take the next frame, `frame` its number in the stream; see `OnlineAligner.feed`."""
         self._recent.append(pose)
-        still = self._speed() <= self._still
-        self._quiet = self._quiet + 1 if still else 0
-        self._moving = 0 if still else self._moving + 1
+        if len(self._recent) == self._recent.maxlen:
+            still = self._speed() <= self._still
+            self._quiet = self._quiet + 1 if still else 0
+            self._moving = 0 if still else self._moving + 1
         if self._following:
             step = self.aligner.feed(pose, time)
             if step is not None and self._is_over(step, pose):
@@ -123,7 +126,7 @@ class ActionFollower:
         return self._state(step)
 
     def _begins(self, pose: F32) -> bool:
-        """Tell whether a pose is closer to the reference's first than its frames are by far."""
+        """Tell whether a pose is nearer to the reference's first than most of its frames are."""
         reference = self.aligner.reference
         features, first = reference.features, reference.rows[0, : len(pose)]
         turn = features.start(pose)
@@ -133,19 +136,17 @@ class ActionFollower:
 
     def _is_over(self, step: AlignmentStep, pose: F32) -> bool:
         ending = step.at >= self._last_moving - _END_SHARE * len(self._speeds)
-        if ending and self._quiet >= self._patience:
+        if ending and self._quiet >= self._confirm:
             return True
         # Given up: still for long where the reference moves, and back in the first pose.
         lost = self._quiet >= self._lost and self._speeds[step.at] > self._still
         return lost and self._begins(pose)
 
     def _speed(self) -> float:
-        rate = self.aligner.reference.rate
-        both = np.stack([self._recent[0], self._recent[-1]])
-        seconds = max(len(self._recent) - 1, 1) / rate
-        return float(
-            _turning(both[:1], both[1:], self.aligner.reference.features.directions)[0]
-        ) / (seconds)
+        """Mean turning rate of the rows over the last `MOTION_SECONDS`, rad/s."""
+        reference, recent = self.aligner.reference, self._recent
+        seconds = (len(recent) - 1) / reference.rate
+        return _turning(recent[0], recent[-1], reference.features.directions) / seconds
 
     def _state(self, step: AlignmentStep | None) -> FollowerState:
         doing = Following.FOLLOWING if self._following else Following.WAITING
@@ -157,20 +158,21 @@ def _speeds(poses: F32, rate: float, directions: bool) -> F64:
     joints = poses.shape[1]
     moved = with_motion(np.ascontiguousarray(poses), rate, directions)[:, joints:]
     angles = 2.0 * np.arccos(np.clip(np.abs(moved[..., 3]), 0.0, 1.0))
-    lag = np.minimum(np.arange(len(poses)), max(1, round(MOTION_SECONDS * rate)))
-    return np.asarray(angles.mean(axis=1) * rate / np.maximum(lag, 1), dtype=np.float64)
+    lag = min(max(1, round(MOTION_SECONDS * rate)), len(poses) - 1)
+    speeds: F64 = angles.astype(np.float64) @ np.full(joints, rate / lag / joints)
+    speeds[:lag] = speeds[lag]
+    return speeds
 
 
-def _turning(before: F32, now: F32, directions: bool) -> F64:
-    """(n,) mean angle between rows, rad; missing rows left out."""
-    dots = np.sum(before * now, axis=-1)
-    angles = np.arccos(np.clip(dots, -1, 1)) if directions else _angle(dots)
-    seen = ~np.isnan(angles)
-    return np.asarray(np.where(seen, angles, 0).sum(axis=-1) / np.maximum(seen.sum(axis=-1), 1))
-
-
-def _angle(dots: F64) -> F64:
-    return np.asarray(2.0 * np.arccos(np.clip(np.abs(dots), 0.0, 1.0)))
+def _turning(before: F32, now: F32, directions: bool) -> float:
+    """Mean angle between rows, rad; missing rows left out."""
+    dots = np.einsum("dk,dk->d", before, now, dtype=np.float64)
+    seen = dots[~np.isnan(dots)]
+    if not len(seen):
+        return 0.0
+    # A rotation turns by twice the angle between its quaternions.
+    cosines, scale = (seen, 1.0) if directions else (np.abs(seen), 2.0)
+    return scale * float(np.arccos(np.clip(cosines, -1.0, 1.0)).mean())
 
 
 def _distances(poses: F32, other: F32, directions: bool) -> F64:
