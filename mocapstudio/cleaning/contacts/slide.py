@@ -90,7 +90,7 @@ def measure_slide(
         speed = hold.steps(place) * rate
         total[hold.contact.start : hold.contact.end - 1] += speed
         count[hold.contact.start : hold.contact.end - 1] += 1
-        gap = float(hold.gap(place).max())
+        gap = float(hold.unmet(place).max())
         mean, worst = (float(f(speed)) if len(speed) else 0.0 for f in (np.mean, np.max))
         found.append(ContactSlide(hold.contact, mean, worst, gap))
     frames = np.divide(total, count, out=np.full(take.frames, np.nan), where=count > 0)
