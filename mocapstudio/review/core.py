@@ -51,7 +51,7 @@ class Core:
         # Label, id and the history before it, of the group that is open.
         self._group: tuple[str, str, History] | None = None
         self._analyses = Analyses()
-        self._sources, self._results = Results(), Results()
+        self._sources, self._results, self._uncorrected = Results(), Results(), Results()
         self._context: tuple[Take, ...] = ()
         self._queue_of: tuple[str, object, object, tuple[QueueItem, ...]] = ("", (), (), ())
         self._saved = lasting(self._state)

@@ -11,6 +11,7 @@ from mocapstudio.cleaning.model import Flag
 from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.take import Take
 from mocapstudio.review import replay
+from mocapstudio.review.contacts import Contacting
 from mocapstudio.review.core import lasting
 from mocapstudio.review.deciding import Deciding
 from mocapstudio.review.history import History
@@ -23,7 +24,7 @@ from mocapstudio.review.viewing import Viewing
 __all__ = ["Document", "DocumentState", "SessionProblem"]
 
 
-class Document(Viewing, Deciding):
+class Document(Viewing, Deciding, Contacting):
     """State of a sitting, the intents that change it, and the listeners that are told.
 
     Intents act on the active performer unless they name one. An intent that cannot be done raises

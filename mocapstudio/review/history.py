@@ -90,6 +90,8 @@ class History:
                 tuple(d for d in sitting.decisions if d.performer != performer),
                 tuple(p for p in sitting.protected if p.performer != performer),
                 tuple(t for t in sitting.trims if t[0] != performer),
+                tuple(c for c in sitting.contacts if c.performer != performer),
+                tuple(p for p in sitting.points if p.performer != performer),
             )
 
         present = without(self.present)

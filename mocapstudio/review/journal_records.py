@@ -19,6 +19,7 @@ from typing import Any, Generic, TypeVar
 import msgspec
 
 from mocapstudio.motion.errors import FileError
+from mocapstudio.review.contact_wire import ContactRecord, PointsRecord
 from mocapstudio.review.history import History, Step
 from mocapstudio.review.model import Sitting
 from mocapstudio.review.references import TakeRecord
@@ -39,7 +40,7 @@ from mocapstudio.review.wire import (
 
 FORMAT = "mocapstudio journal"
 VERSION = 1
-_PARTS = ("edits", "decisions", "protected", "trims")
+_PARTS = ("edits", "decisions", "protected", "trims", "contacts", "points")
 
 Item = TypeVar("Item")
 
@@ -59,6 +60,8 @@ class Delta(Record, frozen=True):
     decisions: Splice[DecisionRecord] = Splice()
     protected: Splice[ProtectedRecord] = Splice()
     trims: Splice[TrimRecord] = Splice()
+    contacts: Splice[ContactRecord] = Splice()
+    points: Splice[PointsRecord] = Splice()
     samples: str = ""
 
 

@@ -8,6 +8,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapstudio.cleaning.contacts.model import Contact, ContactPoint
 from mocapstudio.cleaning.model import Flag, Neighbour
 from mocapstudio.motion.take import Take
 
@@ -148,6 +149,22 @@ class Protected:
     time: str
 
 
+@dataclass(frozen=True, eq=False)
+class OwnContact:
+    """A contact of one performer."""
+
+    performer: str
+    contact: Contact
+
+
+@dataclass(frozen=True, eq=False)
+class OwnPoints:
+    """Contact points of one performer where they were adjusted; others follow from the take."""
+
+    performer: str
+    points: tuple[ContactPoint, ...]
+
+
 @dataclass(frozen=True)
 class QueueItem:
     """One line of the queue: a flag with its verdict.
@@ -170,3 +187,5 @@ class Sitting:
     decisions: tuple[Decision, ...] = ()
     protected: tuple[Protected, ...] = ()
     trims: tuple[tuple[str, tuple[int, int]], ...] = field(default=())
+    contacts: tuple[OwnContact, ...] = ()
+    points: tuple[OwnPoints, ...] = ()

@@ -8,7 +8,8 @@ A zip archive with two entries:
     ``takes``: a `references.TakeRecord` each: id, name, path relative to the session file
     (slashes) and absolute, SHA-256 of the file, how it was read, what it must hold, offset in
     seconds;
-    ``sitting``: ``edits``, ``decisions``, ``protected``, ``trims``, as in `wire`;
+    ``sitting``: ``edits``, ``decisions``, ``protected``, ``trims`` as in `wire`, ``contacts`` and
+    ``points`` as in `contact_wire`;
     ``context``: paths, relative and absolute; ``parameters`` of detection;
     ``active``, ``frame``, ``joints``, ``span``, ``flag``: what was looked at;
     ``flags`` and ``choices`` by performer, so that the queue shows before the next analysis.

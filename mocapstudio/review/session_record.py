@@ -123,6 +123,7 @@ def check(record: SessionRecord) -> None:
     """
     check_unique((t.id for t in record.takes), "performer")
     check_unique((e.id for e in record.sitting.edits), "edit")
+    check_unique((f"{c.id} of {c.performer}" for c in record.sitting.contacts), "contact")
     checks = _Checks(record.takes)
     checks.sitting(record.sitting)
     for performer, flags in record.flags.items():
@@ -150,6 +151,10 @@ class _Checks:
             self.span(protected.performer, protected.joints, protected.start, protected.end)
         for trim in record.trims:
             self.span(trim.performer, (), trim.start, trim.end)
+        for contact in record.contacts:
+            self.span(contact.performer, (contact.joint,), contact.start, contact.end)
+        for own in record.points:
+            self.span(own.performer, (point.joint for point in own.points), 0, 1)
 
     def flag(self, performer: str, one: FlagRecord) -> None:
         self.span(performer, (one.joint, *one.joints), one.start, one.end)

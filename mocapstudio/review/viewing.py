@@ -57,6 +57,7 @@ class Viewing(Core):
         self._analyses.forget(performer)
         self._results.forget(performer)
         self._sources.forget(performer)
+        self._uncorrected.forget(performer)
         self._queues.pop(performer, None)
         changes: dict[str, Any] = {"scene": Scene(left)}
         if self._state.active == performer:

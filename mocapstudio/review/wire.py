@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapstudio.cleaning.model import Flag, Kind, Neighbour
+from mocapstudio.review import contact_wire
 from mocapstudio.review.model import Decision, Edit, Protected, Sitting, Verdict
 
 Arrays = dict[str, NDArray[Any]]
@@ -109,6 +110,8 @@ class SittingRecord(Record, frozen=True):
     decisions: tuple[DecisionRecord, ...] = ()
     protected: tuple[ProtectedRecord, ...] = ()
     trims: tuple[TrimRecord, ...] = ()
+    contacts: tuple[contact_wire.ContactRecord, ...] = ()
+    points: tuple[contact_wire.PointsRecord, ...] = ()
 
 
 def pack_flag(flag: Flag) -> FlagRecord:
@@ -141,6 +144,8 @@ def pack(sitting: Sitting, arrays: Arrays) -> SittingRecord:
         tuple(_pack_decision(d) for d in sitting.decisions),
         tuple(_pack_protected(p) for p in sitting.protected),
         tuple(TrimRecord(performer, *span) for performer, span in sitting.trims),
+        tuple(contact_wire.pack_contact(c) for c in sitting.contacts),
+        tuple(contact_wire.pack_points(p) for p in sitting.points),
     )
 
 
@@ -163,6 +168,8 @@ def unpack(record: SittingRecord, arrays: Mapping[str, NDArray[Any]]) -> Sitting
             for p in record.protected
         ),
         tuple((t.performer, (t.start, t.end)) for t in record.trims),
+        tuple(contact_wire.unpack_contact(c) for c in record.contacts),
+        tuple(contact_wire.unpack_points(p) for p in record.points),
     )
 
 
