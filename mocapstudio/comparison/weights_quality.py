@@ -29,7 +29,7 @@ class Example:
     Parameters
     ----------
     name, performer
-        Of the take, and who it is.
+        Of the take, and who it is; empty where nobody knows.
     rows
         (S, N, 4) as `Reference.rows`.
     segments
@@ -152,7 +152,7 @@ def example_of(
         If no frame lies in a segment.
     """
     codes = segments_of(performance, labels, names)
-    return Example(performance.name, performer or performance.name, performance.rows, codes)
+    return Example(performance.name, performer, performance.rows, codes)
 
 
 def _seen(frames: int, shares: Sequence[float]) -> np.ndarray[tuple[int], np.dtype[np.int64]]:

@@ -176,7 +176,7 @@ def training(
         learnt = yield from as_part(learning, i * size, size, f"fold {i + 1}")
         left_out = [examples[k] for k in tested]
         quality = FoldQuality(
-            tuple(dict.fromkeys(one.performer for one in left_out)),
+            tuple(dict.fromkeys(one.performer or one.name for one in left_out)),
             _quality(reference, segments, kept, learnt, parameters),
             _quality(reference, segments, left_out, learnt, parameters),
             _quality(reference, segments, left_out, _unlearnt(reference), parameters),
@@ -237,7 +237,7 @@ def _options(parameters: TrainingParameters) -> dict[str, float]:
 def folds_of(examples: Sequence[Example], folds: int, seed: int) -> list[tuple[int, ...]]:
     """Deal the performers out to folds; each fold's examples are all of its performers'.
 
-    With one performer, each take counts as a performer of its own; consecutive takes, which are
+    With one performer or none known, each take counts as a performer of its own; consecutive takes, which are
     most alike, stay in one fold then.
     """
     performers = [example.performer for example in examples]

@@ -124,7 +124,9 @@ def test_another_pose_is_not_where_the_action_begins() -> None:
     aside = reaching(60, 60, 60)
     turned = aside.rotations.copy()
     for joint in range(1, len(aside.skeleton)):
-        turned[:, joint] = rot.multiply(rot.about_axis(0, np.full(len(turned), 0.9)), turned[:, joint])
+        turned[:, joint] = rot.multiply(
+            rot.about_axis(0, np.full(len(turned), 0.9)), turned[:, joint]
+        )
     live = LiveAlignment(OnlineAligner(reference), wait=True)
     states = list(played(live, aside.with_motion(turned)))
     assert {s.following for s in states} == {Following.WAITING}
