@@ -237,8 +237,8 @@ def _options(parameters: TrainingParameters) -> dict[str, float]:
 def folds_of(examples: Sequence[Example], folds: int, seed: int) -> list[tuple[int, ...]]:
     """Deal the performers out to folds; each fold's examples are all of its performers'.
 
-    With one performer or none known, each take counts as a performer of its own; consecutive takes, which are
-    most alike, stay in one fold then.
+    With one performer or none known, each take counts as a performer of its own; consecutive takes,
+    which are most alike, stay in one fold then.
     """
     performers = [example.performer for example in examples]
     several = len(set(performers)) > 1

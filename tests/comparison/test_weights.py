@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from itertools import pairwise
 from pathlib import Path
 
 import naive_online as naive
@@ -173,7 +174,7 @@ def noisy_walks(count: int) -> list[LabelledTake]:
         cuts = [0, *(int(np.searchsorted(truth, 12 * k)) for k in range(1, 10)), take.frames]
         parts = [
             Segment("abc"[k % 3] + str(k), a, b)
-            for k, (a, b) in enumerate(zip(cuts, cuts[1:], strict=False))
+            for k, (a, b) in enumerate(pairwise(cuts))
             if b > a
         ]
         found.append(LabelledTake(take, Labels(take.name, Fraction(30), tuple(parts))))
