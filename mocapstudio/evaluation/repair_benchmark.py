@@ -14,7 +14,9 @@ from mocapstudio.cleaning.analysis import Analysis
 from mocapstudio.cleaning.model import Flag, Kind, Proposal
 from mocapstudio.cleaning.parameters import DetectionParameters
 from mocapstudio.cleaning.proposals import apply, propose
+from mocapstudio.cleaning.reasons import neighbours
 from mocapstudio.cleaning.refined import detect_refined
+from mocapstudio.cleaning.repair.donors import medoid
 from mocapstudio.evaluation.cases import Case
 from mocapstudio.evaluation.repair_metrics import (
     EventError,
@@ -173,10 +175,30 @@ def perfect(case: Case, _: Analysis) -> Repaired:
 
 
 def ours_given_truth(case: Case, analysis: Analysis) -> Repaired:
-    """Accept the engine's proposals for flags that have exactly the true rows and spans.
+    """Accept the engine's proposals for flags that have exactly the true rows and spans."""
+    told = _told(case, analysis)
+    return _accepted(told, told.flags)
 
-    Their kind is that of a flag which the engine itself raised there, else an offset's: the true
-    kind is not given away.
+
+def medoid_given_truth(case: Case, analysis: Analysis) -> Repaired:
+    """Accept the neighbours' medoid for every true row and span, as paper 1 does.
+
+    The root rows, and spans without neighbours, are repaired as the engine does.
+    """
+    told = _told(case, analysis)
+
+    def choice(flag: Flag) -> int | None:
+        near = () if flag.joint in ROOT_ROWS else neighbours(told, flag)
+        return near.index(medoid(told, near, (flag.joint,))) if near else None
+
+    return _accepted(told, told.flags, choice)
+
+
+def _told(case: Case, analysis: Analysis) -> Analysis:
+    """Put flags with exactly the true rows and spans in the place of the engine's own.
+
+    As the peers are, the engine is told of all that is wrong. The kind is that of a flag which the
+    engine itself raised there, else an offset's: the true kind is not given away.
     """
     flags = []
     for truth in case.truths:
@@ -190,8 +212,7 @@ def ours_given_truth(case: Case, analysis: Analysis) -> Repaired:
             flags.append(
                 Flag(name, row, truth.joints, truth.start, truth.end, 1.0, middle, 1.0, kind)
             )
-    # As the peers are, the engine is told of all that is wrong.
-    return _accepted(replace(analysis, flags=tuple(flags)), flags)
+    return replace(analysis, flags=tuple(flags))
 
 
 def ours_as_detected(_: Case, analysis: Analysis) -> Repaired:
@@ -199,13 +220,17 @@ def ours_as_detected(_: Case, analysis: Analysis) -> Repaired:
     return _accepted(analysis, analysis.flags)
 
 
-def _accepted(analysis: Analysis, flags: Iterable[Flag]) -> Repaired:
+def _accepted(
+    analysis: Analysis,
+    flags: Iterable[Flag],
+    choice: Callable[[Flag], int | None] = lambda _: None,
+) -> Repaired:
     """Accept flag by flag, each upon the result of those before; the root after the joints."""
     declared: list[Declared] = []
     take = analysis.take
     hips = take.skeleton.names[topology(take.skeleton).hips]
     for flag in sorted(flags, key=lambda f: f.joint in ROOT_ROWS):
-        proposal = propose(analysis, flag, onto=take)
+        proposal = propose(analysis, flag, choice(flag), onto=take)
         take = apply(take, proposal)
         declared += _declared(proposal, hips)
     outside = changed_outside(analysis.take, take, declared)

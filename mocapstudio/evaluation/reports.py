@@ -26,6 +26,7 @@ from mocapstudio.evaluation.repair_benchmark import (
     Repairer,
     RepairScores,
     by_peer,
+    medoid_given_truth,
     ours_as_detected,
     ours_given_truth,
     perfect,
@@ -98,6 +99,7 @@ def repair(
         ours: dict[str, Repairer] = {
             "ours, true spans": ours_given_truth,
             "ours, own flags": ours_as_detected,
+            "neighbours' medoid": medoid_given_truth,
         }
         methods = ours | peers | {"nothing done": untouched, "clean take": perfect}
         rows = yield from repairing(methods, tested, again=True)
