@@ -13,7 +13,6 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse.csgraph import minimum_spanning_tree
 
 from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.errors import MocapError, SkeletonMismatchError
@@ -224,6 +223,9 @@ def _seen(reference: MarkerTake, marker: int, others: tuple[MarkerTake, ...]) ->
 
 def _rigid_pairs(take: MarkerTake, kept: list[int]) -> list[tuple[int, int]]:
     """Join markers into a tree along the pairs whose distance varies least."""
+    # Takes of joints, which are aligned as they arrive, do not wait for this to be imported.
+    from scipy.sparse.csgraph import minimum_spanning_tree
+
     positions = take.positions[:: max(1, take.frames // 200), kept]
     apart = np.linalg.norm(positions[:, :, None] - positions[:, None], axis=-1)
     with np.errstate(invalid="ignore"):
