@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Sequence
-from typing import TypeVar
 
 from mocapstudio.cleaning.analysis import Analysis
+from mocapstudio.cleaning.decision.examples import TooLittleToLearnError
 from mocapstudio.cleaning.decision.model import Decision
 from mocapstudio.cleaning.decision.store import prepare
-from mocapstudio.cleaning.decision.training import TooLittleToLearnError
 from mocapstudio.cleaning.detection import DEFAULTS, detect
 from mocapstudio.cleaning.parameters import PAPER, DetectionParameters
 from mocapstudio.motion.declared import Declared
-from mocapstudio.motion.progress import Progress
+from mocapstudio.motion.progress import Progress, scaled
 from mocapstudio.motion.take import Take
 from mocapstudio.similarity.texture import comparable_joints
-
-Result = TypeVar("Result")
 
 _PREPARING = 0.9
 
@@ -55,25 +52,10 @@ def detect_refined(
     if parameters.mode != PAPER:
         try:
             learning = prepare(tuple(known) or tuple(context) or (take,))
-            decision = yield from _scaled(learning, 0.0, _PREPARING)
+            decision = yield from scaled(learning, 0.0, _PREPARING)
         except TooLittleToLearnError:
             decision = None
     detecting = detect(
         take, context, parameters, decision=decision, normal=normal, protected=protected
     )
-    return (yield from _scaled(detecting, _PREPARING, 1.0))
-
-
-def _scaled(
-    work: Generator[Progress, None, Result], low: float, high: float
-) -> Generator[Progress, None, Result]:
-    """Pass progress on as a part of a larger piece of work."""
-    try:
-        while True:
-            progress = next(work)
-            yield Progress(low + (high - low) * progress.done, progress.what)
-    except StopIteration as stop:
-        result: Result = stop.value
-        return result
-    finally:
-        work.close()
+    return (yield from scaled(detecting, _PREPARING, 1.0))

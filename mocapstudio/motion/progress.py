@@ -44,3 +44,18 @@ def run(
                 on_progress(progress)
     finally:
         work.close()
+
+
+def scaled(
+    work: Generator[Progress, None, Result], low: float, high: float
+) -> Generator[Progress, None, Result]:
+    """Pass progress on as a part, `low` to `high`, of a larger piece of work."""
+    try:
+        while True:
+            progress = next(work)
+            yield Progress(low + (high - low) * progress.done, progress.what)
+    except StopIteration as stop:
+        result: Result = stop.value
+        return result
+    finally:
+        work.close()

@@ -13,11 +13,11 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from mocapstudio.cleaning.decision import gaussian, kernels
+from mocapstudio.cleaning.decision import gaussian, kernels, plausibility
 from mocapstudio.cleaning.decision.gaussian import Moments
 from mocapstudio.cleaning.decision.matching import Matches
 from mocapstudio.cleaning.own_rate import OwnRate
-from mocapstudio.similarity.texture import MotionTexture
+from mocapstudio.similarity.texture import BodyMotion, MotionTexture
 
 F32 = NDArray[np.float32]
 I64 = NDArray[np.int64]
@@ -36,6 +36,8 @@ NAMES = (
     "lowest around", "highest around", "limb others", "body others",
     "speed", "acceleration", "jerk", "constancy", "calm before", "calm after",
     "pop", "jitter", "pop around",
+    *plausibility.SCORES, *plausibility.NEAREST, *plausibility.FEET,
+    "z limbs onset", "z limbs lowest", "z limbs body",
 )  # fmt: skip
 COLUMN = {name: i for i, name in enumerate(NAMES)}
 USUAL = ("context mean", "given others", "given limbs", "pop", "jitter")
@@ -68,13 +70,19 @@ class Surroundings:
     usual: F32 | None = None
 
 
-def features(texture: MotionTexture, around: Surroundings, matches: Matches, rates: OwnRate) -> F32:
+def features(
+    motion: BodyMotion,
+    texture: MotionTexture,
+    around: Surroundings,
+    matches: Matches,
+    rates: OwnRate,
+) -> F32:
     """Assemble the features of the joints.
 
     Parameters
     ----------
-    texture
-        S frames, m joints.
+    motion, texture
+        The take: at its own rate, and sampled at 24 fps; S frames, m joints.
     around
         Its surroundings.
     matches
@@ -96,9 +104,8 @@ def features(texture: MotionTexture, around: Surroundings, matches: Matches, rat
     kernels.residuals(*common, matches.own_found, matches.own_distance, own)
     out[..., :n], out[..., n : 2 * n] = context, own
     vectors = gaussian.rotation_vectors(source, around.centre)
-    others, limbs = gaussian.conditional_residuals(
-        gaussian.stacked(vectors), around.moments, around.limb
-    )
+    stacked = gaussian.stacked(vectors)
+    others, limbs = gaussian.conditional_residuals(stacked, around.moments, around.limb)
     mean = context[..., 2] if len(around.textures) else own[..., 2]
     pops, jitter = rates.pops[:, :joints], rates.jitter[:, :joints]
     for name, values in (
@@ -112,7 +119,18 @@ def features(texture: MotionTexture, around: Surroundings, matches: Matches, rat
     _add_onsets(out, mean, own[..., 2], limbs)
     _add_neighbourhood(out, mean, limbs, around.limb)
     _add_motion(out, source)
+    _add(out, plausibility.SCORES, plausibility.scores(stacked, around.moments, around.limb))
+    _add(out, plausibility.NEAREST, plausibility.nearest(texture, matches, around.limb))
+    _add(out, plausibility.FEET, plausibility.feet(motion, texture, around.limb))
+    score = out[..., COLUMN["z given limbs"]]
+    out[..., COLUMN["z limbs onset"]] = score - running_median(score, 24)
+    out[..., COLUMN["z limbs lowest"]] = windows(score, 2).min(axis=-1)
+    out[..., COLUMN["z limbs body"]] = np.median(score, axis=1)[:, None]
     return out
+
+
+def _add(out: F32, names: Sequence[str], values: F32) -> None:
+    out[..., [COLUMN[name] for name in names]] = values
 
 
 def _add_onsets(out: F32, mean: F32, own: F32, limbs: F32) -> None:

@@ -69,6 +69,10 @@ class Forest:
 
     def probability(self, features: F32) -> F32:
         """Probability of an error for rows of features, (..., n) to (...,)."""
+        return as_probability(self.odds(features))
+
+    def odds(self, features: F32) -> F32:
+        """Log-odds of an error for rows of features, (..., n) to (...,)."""
         rows = np.ascontiguousarray(features.reshape(-1, features.shape[-1]), dtype=np.float32)
         odds = np.full(len(rows), self.base, dtype=np.float32)
 
@@ -79,9 +83,7 @@ class Forest:
             )  # fmt: skip
 
         for_blocks(len(rows), work, at_least=512)
-        return np.asarray(1.0 / (1.0 + np.exp(-odds)), dtype=np.float32).reshape(
-            features.shape[:-1]
-        )
+        return odds.reshape(features.shape[:-1])
 
     def arrays(self, prefix: str) -> dict[str, NDArray[Any]]:
         """All parts as arrays for an npz file."""
@@ -94,6 +96,11 @@ class Forest:
         """Inverse of `arrays`; KeyError where a part is missing."""
         names = ("roots", "feature", "threshold", "left", "right", "missing_left", "value")
         return Forest(float(arrays[f"{prefix}base"]), *(arrays[f"{prefix}{n}"] for n in names))
+
+
+def as_probability(odds: F32) -> F32:
+    """Probability from log-odds."""
+    return np.asarray(1.0 / (1.0 + np.exp(-odds)), dtype=np.float32)
 
 
 def _rounded_down(thresholds: NDArray[np.float64]) -> F32:

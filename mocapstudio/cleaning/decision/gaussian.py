@@ -16,7 +16,8 @@ F64 = NDArray[np.float64]
 F32 = NDArray[np.float32]
 
 OFFSETS = (0, -2, 2, -5, 5, -10, 10)
-_RIDGE = np.deg2rad(2.5) ** 2
+RIDGE = np.deg2rad(2.5) ** 2
+"""Variance (rad²) by which every direction is widened: what a context is too short to tell."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,10 +44,14 @@ class Moments:
         return np.asarray(self.total / self.count)
 
     @cached_property
+    def covariance(self) -> F64:
+        """(d, d) covariance of the stacked poses."""
+        return np.asarray(self.outer / self.count - np.outer(self.mean, self.mean))
+
+    @cached_property
     def precision(self) -> F64:
         """(d, d) inverse of the covariance, widened by 2.5 degrees in every direction."""
-        covariance = self.outer / self.count - np.outer(self.mean, self.mean)
-        return np.asarray(np.linalg.inv(covariance + _RIDGE * np.eye(len(self.mean))))
+        return np.asarray(np.linalg.inv(self.covariance + RIDGE * np.eye(len(self.mean))))
 
     def __add__(self, other: Moments) -> Moments:
         return Moments(self.count + other.count, self.total + other.total, self.outer + other.outer)

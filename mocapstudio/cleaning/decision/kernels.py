@@ -280,6 +280,48 @@ def residuals(
             row[8] = count
 
 
+@nb.njit(nogil=True, cache=True, fastmath=True)
+def nearest_rotations(source: F32, planes: F32, mate: I64, span: I64, out: F32) -> None:
+    """Angle to the nearest rotation of a span of the corpus, joint by joint.
+
+    Parameters
+    ----------
+    source
+        (S, m, 4) quaternions.
+    planes
+        (m, 4, T).
+    mate
+        (m,) the joint that is looked at together with each.
+    span
+        (3,) half-open span of the corpus, and how many frames from the source's own place in it
+        a frame must keep; negative where the source is not in it.
+    out
+        (S, m, 2), overwritten, degrees: the joint alone, and the root of the summed squares of
+        joint and mate (by the chord); NaN where no frame is left.
+    """
+    begin, end, apart = span[0], span[1], span[2]
+    for k in range(source.shape[1]):
+        g = mate[k]
+        tx, ty, tz, tw = planes[k, 0], planes[k, 1], planes[k, 2], planes[k, 3]
+        ux, uy, uz, uw = planes[g, 0], planes[g, 1], planes[g, 2], planes[g, 3]
+        for t in range(source.shape[0]):
+            x, y, z, w = source[t, k, 0], source[t, k, 1], source[t, k, 2], source[t, k, 3]
+            a, b, c, d = source[t, g, 0], source[t, g, 1], source[t, g, 2], source[t, g, 3]
+            alone, pair = _FOUR, _FOUR
+            for j in range(begin, end):
+                if apart >= 0 and abs(j - begin - t) <= apart:
+                    continue
+                one = _ONE - abs(x * tx[j] + y * ty[j] + z * tz[j] + w * tw[j])
+                other = _ONE - abs(a * ux[j] + b * uy[j] + c * uz[j] + d * uw[j])
+                alone = min(alone, one)
+                pair = min(pair, one + other)
+            if alone == _FOUR:
+                out[t, k, :] = np.nan
+                continue
+            out[t, k, 0] = 2.0 * np.arccos(min(_ONE - alone, _ONE)) * _DEGREES
+            out[t, k, 1] = np.sqrt(_FOUR * _TWO * max(pair, np.float32(0.0))) * _DEGREES
+
+
 @nb.njit(nogil=True, cache=True)
 def add_trees(
     rows: F32,

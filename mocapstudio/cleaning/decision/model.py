@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mocapstudio.cleaning import own_rate
 from mocapstudio.cleaning.decision.features import COLUMN, Surroundings, features
-from mocapstudio.cleaning.decision.forest import Forest
+from mocapstudio.cleaning.decision.forest import Forest, as_probability
 from mocapstudio.cleaning.decision.matching import LEAST_FRAMES, Matches, match
 from mocapstudio.cleaning.decision.root_features import root_features
 from mocapstudio.cleaning.decision.spans import judged
@@ -39,9 +40,47 @@ class Judge:
     joints: Forest
     root: Forest
 
+    def odds(self, seen: Seen) -> F32:
+        """(S, m + 2) log-odds of an error: joints, root position, root heading."""
+        return np.hstack([self.joints.odds(seen.joints), self.root.odds(seen.root)])
+
     def probability(self, seen: Seen) -> F32:
         """(S, m + 2) probability of an error: joints, root position, root heading."""
-        return np.hstack([self.joints.probability(seen.joints), self.root.probability(seen.root)])
+        return as_probability(self.odds(seen))
+
+    def arrays(self, suffix: str) -> dict[str, NDArray[Any]]:
+        """All parts as arrays for an npz file."""
+        return {**self.joints.arrays(f"joints{suffix}"), **self.root.arrays(f"root{suffix}")}
+
+    @staticmethod
+    def from_arrays(arrays: Any, suffix: str) -> Judge:
+        """Inverse of `arrays`; KeyError where a part is missing."""
+        parts = (Forest.from_arrays(arrays, f"{name}{suffix}") for name in ("joints", "root"))
+        return Judge(*parts)
+
+
+@dataclass(frozen=True, eq=False)
+class Bench:
+    """A judge who knows the context and one who knows motion in general, weighing their odds.
+
+    Parameters
+    ----------
+    own
+        Learnt from the context.
+    general
+        Learnt from many other contexts, see `general.general_judge`.
+    share
+        0..1 weight of the general one.
+    """
+
+    own: Judge
+    general: Judge
+    share: float
+
+    def probability(self, seen: Seen) -> F32:
+        """(S, m + 2) probability of an error: joints, root position, root heading."""
+        own, general = self.own.odds(seen), self.general.odds(seen)
+        return as_probability((1.0 - self.share) * own + self.share * general)
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +102,7 @@ class Decision:
 
     joints: tuple[str, ...]
     usual: F32
-    judges: tuple[Judge, ...]
+    judges: tuple[Bench, ...]
     spans: Forest
 
     def probabilities(self, motion: BodyMotion, around: Surroundings) -> tuple[F32, F32]:
@@ -111,7 +150,7 @@ def examine(motion: BodyMotion, around: Surroundings, barred: Sequence[int] = ()
     slide = pool(motion.slide.astype(np.float32)[:, None], texture)[:, 0]
     matches = match(texture, around.textures, around.limb, barred)
     return Seen(
-        features(texture, around, matches, rates),
+        features(motion, texture, around, matches, rates),
         root_features(texture, list(around.textures), matches, rates, slide),
         matches,
     )
@@ -124,7 +163,7 @@ def halves(frames: int, take: int, takes: int) -> NDArray[np.int64]:
     return np.arange(frames) // _BLOCK % 2
 
 
-def crossed(judges: tuple[Judge, Judge], seen: Seen, half: NDArray[np.int64]) -> F32:
+def crossed(judges: tuple[Bench, Bench], seen: Seen, half: NDArray[np.int64]) -> F32:
     """(S, m + 2) probabilities, every frame judged by the half it does not belong to."""
     of_first, of_second = (judge.probability(seen) for judge in judges)
     return np.asarray(np.where((half == 0)[:, None], of_second, of_first), dtype=np.float32)

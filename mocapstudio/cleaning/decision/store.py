@@ -17,13 +17,14 @@ import numpy as np
 import platformdirs
 
 from mocapstudio.cleaning.decision.forest import Forest
-from mocapstudio.cleaning.decision.model import Decision, Judge
+from mocapstudio.cleaning.decision.general import general_judge
+from mocapstudio.cleaning.decision.model import Bench, Decision, Judge
 from mocapstudio.cleaning.decision.training import learn
 from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.take import Take
 from mocapstudio.similarity.texture import comparable_joints
 
-_VERSION = 10
+_VERSION = 11
 _MOST_KEPT = 64
 _DAMAGED = (
     OSError, EOFError, KeyError, ValueError, RuntimeError, MemoryError,
@@ -93,8 +94,8 @@ def save(decision: Decision, path: Path) -> None:
         with os.fdopen(handle, "wb") as out:
             arrays: dict[str, Any] = {"joints": np.array(decision.joints), "usual": decision.usual}
             for i, judge in enumerate(decision.judges):
-                arrays |= judge.joints.arrays(f"joints {i} ")
-                arrays |= judge.root.arrays(f"root {i} ")
+                arrays |= judge.own.arrays(f" {i} ")
+                arrays["share"] = np.array(judge.share)
             arrays |= decision.spans.arrays("spans ")
             np.savez_compressed(out, **arrays)
         Path(name).replace(path)
@@ -108,10 +109,7 @@ def load(path: Path) -> Decision | None:
     try:
         with np.load(path, allow_pickle=False) as arrays:
             judges = tuple(
-                Judge(
-                    Forest.from_arrays(arrays, f"joints {i} "),
-                    Forest.from_arrays(arrays, f"root {i} "),
-                )
+                Bench(Judge.from_arrays(arrays, f" {i} "), general_judge(), float(arrays["share"]))
                 for i in range(2 if "joints 1 base" in arrays else 1)
             )
             names = tuple(str(name) for name in arrays["joints"])

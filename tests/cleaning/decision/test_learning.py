@@ -12,11 +12,12 @@ from made_takes import faced, moved, turned, walking
 
 from mocapstudio.cleaning.analysis import Analysis
 from mocapstudio.cleaning.decision import store, training
+from mocapstudio.cleaning.decision.examples import TooLittleToLearnError
 from mocapstudio.cleaning.decision.features import COLUMN, NAMES, USUAL
 from mocapstudio.cleaning.decision.matching import LEAST_FRAMES
 from mocapstudio.cleaning.decision.model import Decision, examine, halves, pool
 from mocapstudio.cleaning.decision.surroundings import anatomy_of, surroundings
-from mocapstudio.cleaning.decision.training import TooLittleToLearnError, learn
+from mocapstudio.cleaning.decision.training import learn
 from mocapstudio.cleaning.detection import detect
 from mocapstudio.cleaning.parameters import PAPER, DetectionParameters
 from mocapstudio.cleaning.refined import detect_refined
