@@ -145,7 +145,7 @@ def _without_training(made: ExampleSet) -> dict[str, F64]:
 
 def _by_variance(made: ExampleSet, parameters: TrainingParameters) -> F64:
     """(N, K) qualities under weights by variance, each fold's from the other folds."""
-    out = np.empty((len(made.examples), len(SHARES)))
+    out = _untrained(made, parameters)
     for tested in _groups(made, parameters):
         kept = [one.rows for k, one in enumerate(made.examples) if k not in tested]
         weights = variance_weights(kept, made.reference.directions)
@@ -157,7 +157,7 @@ def _trained(
     made: ExampleSet, parameters: TrainingParameters, at: float, size: float, what: str
 ) -> Generator[Progress, None, F64]:
     """(N, K) qualities under evolved weights, each fold's from the other folds."""
-    out = np.empty((len(made.examples), len(SHARES)))
+    out = _untrained(made, parameters)
     groups = _groups(made, parameters)
     for i, tested in enumerate(groups):
         kept = [one for k, one in enumerate(made.examples) if k not in tested]
@@ -165,6 +165,14 @@ def _trained(
         part = size / len(groups)
         learnt = yield from as_part(learning, at + i * part, part, what)
         _test(made, tested, learnt, out)
+    return out
+
+
+def _untrained(made: ExampleSet, parameters: TrainingParameters) -> F64:
+    """(N, K) qualities where there is nothing to learn from."""
+    out = np.empty((len(made.examples), len(SHARES)))
+    learnt = Learnt(made.reference.plain_weights, parameters.variants[0])
+    _test(made, range(len(made.examples)), learnt, out)
     return out
 
 

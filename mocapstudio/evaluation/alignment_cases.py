@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 
 from mocapstudio import formats
-from mocapstudio.comparison.labels import labels_of, read_labels
+from mocapstudio.comparison.labels import Labels, labels_of, read_labels
 from mocapstudio.comparison.weights_examples import LabelledTake, repetitions
-from mocapstudio.motion.errors import MocapError
+from mocapstudio.motion.errors import MocapError, NoRateError
 
-_FEWEST = 3
+_FEWEST = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +25,7 @@ class Action:
     name
         Of the file that labels them.
     performances
-        Three at least.
+        Two at least; weights are learnt from three on.
     """
 
     name: str
@@ -41,7 +41,7 @@ def actions(data: Sequence[Path], labels: Sequence[Path]) -> list[Action]:
     """Find the labelled takes among the data; one action for each file of labels.
 
     A take in which the action is repeated gives a performance for each repetition. Files of labels
-    without three performances in the data are left out.
+    without two performances in the data are left out.
 
     Raises
     ------
@@ -57,12 +57,19 @@ def actions(data: Sequence[Path], labels: Sequence[Path]) -> list[Action]:
         wanted = [file for file in files if labels_of(file.name, known) is not None]
         performances: list[LabelledTake] = []
         for file in wanted:
-            takes, _ = formats.read_any(file)
             own = labels_of(file.name, known)
             assert own is not None
-            performances += repetitions(LabelledTake(takes[0], own))
+            performances += repetitions(LabelledTake(_read(file, own), own))
         if len(performances) >= _FEWEST:
             found.append(Action(path.stem, tuple(performances)))
     if not found:
         raise MocapError("no take of the data is among the labelled ones")
     return found
+
+
+def _read(file: Path, labels: Labels) -> formats.Recording:
+    try:
+        takes, _ = formats.read_any(file)
+    except NoRateError:
+        takes, _ = formats.read_any(file, formats.ReadOptions(fps=labels.rate))
+    return takes[0]

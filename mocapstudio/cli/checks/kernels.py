@@ -9,6 +9,7 @@ from typing import TypeVar
 from mocapstudio.cli.checks.finding import Finding, State
 from mocapstudio.cli.kernel_cache import TEMPORARY, VARIABLE, is_writable, place_kernel_cache
 from mocapstudio.motion.progress import Progress
+from mocapstudio.motion.take import Take
 
 Result = TypeVar("Result")
 
@@ -58,8 +59,26 @@ def warm() -> Generator[Progress, None, Finding]:
     yield from _part(detect(take, (), low[CALIBRATED], decision=decision), 0.6, 0.8)
     analysis = yield from _part(detect(take, (), low[PAPER]), 0.8, 0.95)
     propose(analysis, analysis.flags[0])
-    yield from _part(compare(take, take), 0.95, 1.0)
+    yield from _part(compare(take, take), 0.95, 0.99)
+    _align_online(take)
     return Finding("Kernels", State.OK, f"all compiled, after {time.monotonic() - began:.0f} s")
+
+
+def _align_online(take: Take) -> None:
+    import numpy as np
+
+    from mocapstudio.comparison.online import OnlineAligner, Variant
+    from mocapstudio.comparison.online_reference import reference_of
+    from mocapstudio.comparison.weights_quality import Example, Trials
+
+    reference = reference_of(take)
+    aligner = OnlineAligner(reference, path_frames=2)
+    aligner.feed(reference.rows[0, : len(reference.features.names)])
+    aligner.path()
+    segments = np.zeros(len(reference), np.int32)
+    short = Example("", "", reference.rows[:3], segments[:3])
+    for variant in Variant:
+        Trials(reference, segments, [short]).qualities(reference.plain_weights[None], variant)
 
 
 def _part(
