@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from mocapstudio.gui.command import SEPARATOR, Command
 from mocapstudio.gui.compare.commands import COMPARE, SEGMENTS
+from mocapstudio.gui.contacts.commands import CONTACTS
 from mocapstudio.gui.workspaces.registry import WORKSPACES
 
 __all__ = ["COMMANDS", "HOMES", "MENUS", "SEPARATOR", "Command"]
@@ -150,6 +151,7 @@ MENUS = {
     "Fla&g": FLAG,
     "&Neighbour": NEIGHBOURS,
     "&Analysis": ANALYSIS,
+    "Co&ntacts": CONTACTS,
     "&Compare": COMPARE,
     "&Segments": SEGMENTS,
     "&Play": PLAY,
@@ -159,6 +161,7 @@ MENUS = {
 }
 
 HOMES = {"Fla&g": ("review",), "&Neighbour": ("review",), "&Analysis": ("review",),
+         "Co&ntacts": ("contacts",),
          "&Compare": ("compare",), "&Segments": ("compare",)}  # fmt: skip
 """Menus that belong to some workspaces only, by title."""
 

@@ -138,7 +138,34 @@ def _hold(
     offset = offsets.get(key, np.zeros(3))
     span = slice(contact.start, contact.end)
     place = pose[0][span, joint] + rot.rotate(pose[1][span, joint], offset)
+    return hold_at(take, contact, offset, place, others)
+
+
+def hold_at(
+    take: Take, contact: Contact, offset: Array, place: Array, others: Mapping[str, Take]
+) -> Hold:
+    """Lay one contact out whose point is known to be at `place`.
+
+    Parameters
+    ----------
+    take
+        F frames.
+    contact
+        A contact of one of its joints, inside its frames.
+    offset
+        (3,) metres: the point in the joint's frame.
+    place
+        (m, 3) metres: where it is in the world over the contact's m frames.
+    others
+        As for `holds`.
+
+    Raises
+    ------
+    MocapError
+        If what it follows is unknown or does not fit.
+    """
     target, projection = _target(take, contact, place, others)
+    joint = take.skeleton.index[contact.joint]
     return Hold(contact, joint, offset, place, target, projection)
 
 

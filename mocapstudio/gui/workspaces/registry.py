@@ -43,6 +43,12 @@ def _review(window: MainWindow) -> Workspace:
     return window.workspace
 
 
+def _contacts(window: MainWindow) -> Workspace:
+    from mocapstudio.gui.workspaces.contacts import ContactsWorkspace
+
+    return ContactsWorkspace(window)
+
+
 def _compare(window: MainWindow) -> Workspace:
     from mocapstudio.gui.workspaces.compare import CompareWorkspace
 
@@ -53,6 +59,8 @@ def _compare(window: MainWindow) -> Workspace:
 WORKSPACES = (
     Entry("review", "&Review", "See what is wrong in a take, decide, export",
           "Ctrl+1", "flag", _review),
+    Entry("contacts", "C&ontacts", "Plant the feet, join the hands",
+          "Ctrl+2", "link", _contacts),
     Entry("compare", "&Compare", "Set performances beside a reference",
           "Ctrl+3", "compare", _compare),
 )  # fmt: skip

@@ -1,0 +1,137 @@
+"""Detecting and solving, in the background."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Mapping, Sequence
+from functools import partial
+
+from PySide6.QtCore import QObject
+
+from mocapstudio.cleaning.contacts.changes import as_proposals
+from mocapstudio.cleaning.contacts.detection import detecting
+from mocapstudio.cleaning.contacts.model import Contact, ContactPoint, Fixed
+from mocapstudio.cleaning.ik.foot_skate import SkateResult, clean
+from mocapstudio.gui.contacts.bridge import ContactsBridge
+from mocapstudio.gui.contacts.lanes import Key
+from mocapstudio.gui.contacts.reading import Reading, Readings
+from mocapstudio.gui.contacts.targets import drawn_target
+from mocapstudio.gui.jobs import Jobs
+from mocapstudio.gui.messages import Messages
+from mocapstudio.motion.errors import MocapError
+from mocapstudio.motion.progress import Progress
+from mocapstudio.motion.take import Take
+from mocapstudio.review.model import Scene
+
+DETECT, SOLVE = "contacts-detect", "contacts-solve"
+
+
+class Working(QObject):
+    """Runs what takes a while and hands what came of it to the document.
+
+    Parameters
+    ----------
+    bridge
+        What is shown.
+    readings
+        Points of the take under review.
+    jobs
+        Runs the work.
+    messages
+        Is told what came of it.
+    """
+
+    def __init__(
+        self, bridge: ContactsBridge, readings: Readings, jobs: Jobs, messages: Messages
+    ) -> None:
+        super().__init__(bridge)
+        self._bridge, self._readings = bridge, readings
+        self._jobs, self._messages = jobs, messages
+
+    @property
+    def busy(self) -> bool:
+        """Whether contacts are being detected or solved."""
+        return any(job.key in (DETECT, SOLVE) for job in self._jobs.running)
+
+    def detect(self) -> None:
+        """Find contacts of the take under review; what was drawn stays."""
+        desk, reading = self._bridge.desk, self._readings.now
+        document, performer = desk.document, desk.state.active
+        if reading is None:
+            return
+
+        def found(contacts: tuple[Contact, ...]) -> None:
+            if desk.document is not document or not _is_open(desk.state.scene, performer):
+                return
+            document.set_detected(performer, contacts)
+            count = sum(not one.drawn for one in document.contacts(performer))
+            self._messages.tell(f"{count} contact{'' if count == 1 else 's'} found.")
+
+        work = _detecting(reading, self._bridge.kept)
+        words = "Contacts could not be detected"
+        failed = partial(self._messages.complain, doing=words)
+        self._jobs.start("Detecting contacts", work, found, failed, key=DETECT)
+
+    def solve(self) -> None:
+        """Bend the motion so that every contact that can be met is met."""
+        desk, reading = self._bridge.desk, self._readings.now
+        document, performer = desk.document, desk.state.active
+        if reading is None:
+            return
+        contacts = tuple(one for one in self._bridge.kept if not reading.trouble(one))
+        left_out = len(self._bridge.kept) - len(contacts)
+
+        def solved(result: SkateResult) -> None:
+            if desk.document is not document or not _is_open(desk.state.scene, performer):
+                return
+            try:
+                document.set_corrections(performer, as_proposals(result.take, result.declared))
+            except MocapError as error:
+                self._messages.complain(error, "The contacts cannot be met")
+                return
+            self._bridge.set_ui(unreached=result.unreached)
+            self._messages.tell(_told(result, left_out))
+
+        work = clean(
+            reading.before,
+            contacts,
+            reading.points,
+            others=reading.others,
+            ranges=reading.ranges,
+        )
+        words = "The contacts could not be met"
+        failed = partial(self._messages.complain, doing=words)
+        self._jobs.start("Meeting contacts", work, solved, failed, key=SOLVE)
+
+    def draw(self, key: Key, start: int, end: int) -> None:
+        """Add a contact that was drawn by hand, and choose it."""
+        reading, document = self._readings.now, self._bridge.desk.document
+        if reading is None:
+            return
+        draft = Contact("", key[0], key[1], start, end, Fixed((0.0, 0.0, 0.0)), 1.0, True)
+        point = reading.point(draft)
+        target = drawn_target(reading, point, draft, self._bridge.kept)
+        added = document.add_contact(Contact("", key[0], key[1], start, end, target, 1.0, True))
+        self._bridge.choose(added)
+
+
+def _detecting(
+    reading: Reading, keep: Sequence[Contact]
+) -> Generator[Progress, None, tuple[Contact, ...]]:
+    partners: Mapping[str, Take] = reading.others
+    points: tuple[ContactPoint, ...] = reading.points
+    return (yield from detecting(reading.before, partners, points, keep))
+
+
+def _is_open(scene: Scene, performer: str) -> bool:
+    return any(one.id == performer for one in scene.performers)
+
+
+def _told(result: SkateResult, left_out: int) -> str:
+    slide = result.slide
+    words = [f"Slide in contact {100 * slide.before:.1f} → {100 * slide.after:.1f} cm/s"]
+    words.append(f"hips moved {100 * result.moved:.1f} cm at most")
+    if result.unreached:
+        words.append(f"{len(result.unreached)} out of reach")
+    if left_out:
+        words.append(f"{left_out} left out")
+    return "; ".join(words) + "."

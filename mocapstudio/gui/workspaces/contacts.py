@@ -1,0 +1,154 @@
+"""The Contacts workspace: what feet and hands touch, seen, drawn and dragged."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QEvent, Qt
+from PySide6.QtGui import QShowEvent
+from PySide6.QtWidgets import QFrame, QSplitter, QVBoxLayout, QWidget
+
+from mocapstudio.gui import settings
+from mocapstudio.gui.contacts.answering import Answering
+from mocapstudio.gui.contacts.bridge import ContactsBridge, ContactsUi
+from mocapstudio.gui.contacts.curves_view import CurvesView
+from mocapstudio.gui.contacts.filing import Filing
+from mocapstudio.gui.contacts.inspector import ContactInspector
+from mocapstudio.gui.contacts.lanes_view import LanesView
+from mocapstudio.gui.contacts.reading import Readings
+from mocapstudio.gui.contacts.stage import ContactsStage
+from mocapstudio.gui.contacts.working import Working
+from mocapstudio.gui.document import only_frame_differs
+from mocapstudio.gui.plots.time_range import TimeRange
+from mocapstudio.gui.views.transport import TransportView
+from mocapstudio.gui.workspaces.workspace import Answers, Workspace
+from mocapstudio.review.state import DocumentState
+
+if TYPE_CHECKING:
+    from mocapstudio.gui.main_window import MainWindow
+
+
+class ContactsWorkspace(Workspace):
+    """Viewport and inspector above, lanes and curves below, all at one frame and one choice.
+
+    Parameters
+    ----------
+    window
+        The desk.
+    """
+
+    def __init__(self, window: MainWindow) -> None:
+        super().__init__()
+        self.setObjectName("contacts")
+        self._actions = window.actions_
+        self.bridge = ContactsBridge(window.bridge, self)
+        self.readings = Readings(self.bridge, window.jobs, window.messages)
+        self.working = Working(self.bridge, self.readings, window.jobs, window.messages)
+        self.time_range = TimeRange(self)
+        self.stage = ContactsStage(self.bridge, self.readings)
+        self.transport = TransportView(window.bridge, window.actions_)
+        self.inspector = ContactInspector(self.bridge, self.readings, window.actions_)
+        self.lanes = LanesView(self.bridge, self.readings, self.time_range)
+        self.curves = CurvesView(self.bridge, self.readings, self.time_range)
+        self._columns = QSplitter(Qt.Orientation.Horizontal)
+        self._rows = QSplitter(Qt.Orientation.Vertical)
+        self._shared_out = False
+        self._lay_out()
+        self.lanes.draw_wanted.connect(self.working.draw)
+        filing = Filing(window, self.bridge, self.readings, window.messages)
+        self.answering = Answering(self, filing)
+        window.bridge.changed.connect(self._follow)
+        self.bridge.ui_changed.connect(self._follow_ui)
+        self._answers = self.answering.answers()
+        self.readings.changed.connect(lambda: self._tell(anyway=True))
+
+    def answers(self) -> Answers:
+        """Answer the commands about contacts."""
+        return self.answering.answers()
+
+    def tools(self) -> Sequence[QWidget]:
+        """What it adds to the toolbar."""
+        names = {
+            "contacts-detect": "Detect", "contacts-solve": "Solve",
+            "contacts-snap": "Snap", "contacts-pose": "Key pose", "export": "",
+        }  # fmt: skip
+        return [self._actions.tool_button(name, text=text) for name, text in names.items()]
+
+    def enter(self) -> None:
+        """Begin to follow the take under review, laid out as remembered."""
+        self.readings.wake(True)
+
+    def leave(self) -> None:
+        """Stop following."""
+        self.readings.wake(False)
+        self.bridge.set_ui(held=None)
+
+    def share_out(self) -> None:
+        """Share the room out as it comes."""
+        width, height = self.width(), self.height()
+        right = min(max(round(0.21 * width), 270), 340)
+        self._columns.setSizes([width - right, right])
+        lanes = min(max(round(0.24 * height), 150), 220)
+        curves = min(max(round(0.19 * height), 120), 190)
+        self._rows.setSizes([height - lanes - curves, lanes, curves])
+
+    def remember(self) -> None:
+        """Remember sizes."""
+        settings.set_layout("contacts-columns", self._columns.saveState())
+        settings.set_layout("contacts-rows", self._rows.saveState())
+
+    def showEvent(self, event: QShowEvent) -> None:
+        """Lay out as remembered, else as it comes."""
+        super().showEvent(event)
+        if self._shared_out:
+            return
+        self._shared_out = True
+        self.share_out()
+        for splitter, name in ((self._columns, "columns"), (self._rows, "rows")):
+            state = settings.layout(f"contacts-{name}")
+            if state is not None:
+                splitter.restoreState(state)
+
+    def changeEvent(self, event: QEvent) -> None:
+        """Follow the theme."""
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.StyleChange, QEvent.Type.PaletteChange):
+            self.lanes.restyle()
+            self.curves.restyle()
+
+    def _lay_out(self) -> None:
+        centre = QFrame()
+        column = QVBoxLayout(centre)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addWidget(self.stage, 1)
+        column.addWidget(self.transport)
+        for splitter, name in ((self._columns, "columns"), (self._rows, "rows")):
+            splitter.setObjectName(f"contacts-{name}")
+            splitter.setHandleWidth(4)
+            splitter.setChildrenCollapsible(False)
+        self._columns.addWidget(centre)
+        self._columns.addWidget(self.inspector)
+        for row in (self._columns, self.lanes, self.curves):
+            self._rows.addWidget(row)
+        for index, stretch in enumerate((1, 0)):
+            self._columns.setStretchFactor(index, stretch)
+        for index, stretch in enumerate((1, 0, 0)):
+            self._rows.setStretchFactor(index, stretch)
+        whole = QVBoxLayout(self)
+        whole.setContentsMargins(0, 0, 0, 0)
+        whole.addWidget(self._rows)
+
+    def _follow(self, old: DocumentState, new: DocumentState) -> None:
+        self._tell(anyway=not only_frame_differs(old, new))
+
+    def _follow_ui(self, _old: ContactsUi, _new: ContactsUi) -> None:
+        self._tell(anyway=True)
+
+    def _tell(self, anyway: bool) -> None:
+        # Where the play head is decides whether a contact can be split.
+        answers = self.answering.answers()
+        if anyway or answers.allowed != self._answers.allowed:
+            self._answers = answers
+            self.answers_changed.emit()
