@@ -14,7 +14,7 @@ from mocapstudio.cleaning.decision.forest import Forest
 F32 = NDArray[np.float32]
 
 CANDIDATE = 0.15
-RARER = 3.0
+RARER = 4.5
 """How many times rarer errors are taken to be than in the examples: measured, not counted."""
 _BRIDGE = 2
 _WATCHED = (

@@ -11,7 +11,7 @@ import pytest
 from made_takes import faced, moved, turned, walking
 
 from mocapstudio.cleaning.analysis import Analysis
-from mocapstudio.cleaning.decision import store, training
+from mocapstudio.cleaning.decision import examples, store, training
 from mocapstudio.cleaning.decision.examples import TooLittleToLearnError
 from mocapstudio.cleaning.decision.features import COLUMN, NAMES, USUAL
 from mocapstudio.cleaning.decision.matching import LEAST_FRAMES
@@ -38,7 +38,7 @@ def decision() -> Decision:
 @pytest.fixture
 def little_work(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where what is learnt does not matter, little is learnt from."""
-    monkeypatch.setattr(training, "_VARIANTS", (8, 8))
+    monkeypatch.setattr(examples, "_VARIANTS", (8, 8))
     for name in ("_WHOLE", "_HALF", "_ROOT", "_SMALL"):
         monkeypatch.setattr(training, name, replace(getattr(training, name), trees=4, least=5))
 
@@ -110,7 +110,7 @@ def test_the_same_seed_learns_the_same(little_work: None) -> None:
     rows = np.random.default_rng(0).normal(size=(300, len(NAMES))).astype(np.float32)
     once, again, other = (run(learn(some, seed=seed)) for seed in (3, 3, 4))
     np.testing.assert_array_equal(once.usual, again.usual)
-    judged = [one.judges[0].joints.probability(rows) for one in (once, again, other)]
+    judged = [one.judges[0].own.joints.probability(rows) for one in (once, again, other)]
     np.testing.assert_array_equal(judged[0], judged[1])
     assert np.any(judged[0] != judged[2])
 

@@ -12,7 +12,8 @@ from made_takes import walking
 
 from mocapstudio.cleaning.decision import store
 from mocapstudio.cleaning.decision.forest import Forest
-from mocapstudio.cleaning.decision.model import Decision, Judge
+from mocapstudio.cleaning.decision.general import general_judge
+from mocapstudio.cleaning.decision.model import Bench, Decision, Judge
 from mocapstudio.motion.take import Take
 
 JOINTS = ("Hips", "Spine", "Head")
@@ -35,12 +36,13 @@ def forest(seed: int) -> Forest:
 
 def decision(judges: int) -> Decision:
     usual = np.arange(15, dtype=np.float32).reshape(5, 3)
-    both = tuple(Judge(forest(2 * i), forest(2 * i + 1)) for i in range(judges))
+    own = (Judge(forest(2 * i), forest(2 * i + 1)) for i in range(judges))
+    both = tuple(Bench(one, general_judge(), 0.25) for one in own)
     return Decision(JOINTS, usual, both, forest(9))
 
 
 def forests(one: Decision) -> list[Forest]:
-    return [f for judge in one.judges for f in (judge.joints, judge.root)] + [one.spans]
+    return [f for judge in one.judges for f in (judge.own.joints, judge.own.root)] + [one.spans]
 
 
 @pytest.mark.parametrize("judges", [1, 2])
@@ -52,7 +54,7 @@ def test_what_is_saved_is_loaded(tmp_path: Path, judges: int) -> None:
     assert again is not None
     assert again.joints == JOINTS
     np.testing.assert_array_equal(again.usual, kept.usual)
-    assert len(again.judges) == judges
+    assert [one.share for one in again.judges] == judges * [0.25]
     rows = np.random.default_rng(0).normal(size=(50, 3)).astype(np.float32)
     rows[::7, 0] = np.nan
     for mine, theirs in zip(forests(kept), forests(again), strict=True):
