@@ -117,7 +117,7 @@ class Switching(QObject):
         if old is not new and only_frame_differs(old, new):
             return
         self._show_page()
-        self._window.drops.offer(self._front.zones(self._opened))
+        self._answer()
 
     def _drop(self, zone: str, paths: Sequence[Path]) -> None:
         if not self._front.drop(zone, paths):

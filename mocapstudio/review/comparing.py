@@ -121,8 +121,10 @@ class Comparing:
     def clear(self) -> None:
         """Begin anew, with the parameters as they are."""
         self._steps, self._saved = Steps(), ()
-        empty = ComparingState(parameters=self._state.parameters)
-        self._put(**{name: getattr(empty, name) for name in differing(self._state, empty)})
+        self._put(
+            reference=None, sources=(), chosen="", frame=0, source_frame=0, shown=(-0.5, 0.5),
+            row=None, segment=None, labels=None,
+        )  # fmt: skip
 
     def choose(self, source: str) -> None:
         """Show another source; the reference's frame stays, and about what is visible of it."""

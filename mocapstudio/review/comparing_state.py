@@ -197,6 +197,7 @@ class ComparingState:
 
 
 _HEADS = {"frame", "source_frame"}
+_VIEW = _HEADS | {"shown"}
 _NAMES = tuple(one.name for one in fields(ComparingState))
 
 
@@ -208,6 +209,11 @@ def differing(old: ComparingState, new: ComparingState) -> frozenset[str]:
         if getattr(old, name) is not getattr(new, name)
         and (name in ("reference", "sources") or getattr(old, name) != getattr(new, name))
     )
+
+
+def only_view_differs(old: ComparingState, new: ComparingState) -> bool:
+    """Tell whether two states differ in frames and visible stretch at most, as while zooming."""
+    return differing(old, new) <= _VIEW
 
 
 def only_heads_differ(old: ComparingState, new: ComparingState) -> bool:

@@ -59,7 +59,7 @@ def reference_stretch(
     lying = (middle + 0.5) * scale - 0.5
     first = min(max(int(start), 0), frames - 1)
     matched = float(comparison.warp[first : max(int(end) + 1, first + 1)].mean())
-    share = min((end - start) / frames_wide(comparison, true_speed), 1.0)
+    share = min((end - start) / frames_wide(comparison, true_speed), 1.0) ** 2
     centre = share * lying + (1.0 - share) * matched
     half = 0.5 * (end - start) * scale
     return Stretch(centre - half, centre + half)

@@ -26,7 +26,7 @@ from mocapstudio.gui.plots.layers import Layer
 from mocapstudio.gui.plots.pooling import block_length
 from mocapstudio.gui.plots.time_plot import LEFT_GUTTER, TimePlot
 from mocapstudio.gui.plots.time_range import TimeRange
-from mocapstudio.review.comparing import Compared, ComparingState
+from mocapstudio.review.comparing import Compared, ComparingState, Linked
 from mocapstudio.review.comparing_state import only_heads_differ
 
 _GAP = 3.0
@@ -199,7 +199,8 @@ class MultiplesView(QWidget):
         self.setObjectName("compare-multiples-view")
         self._bridge = bridge
         self.time_range = TimeRange(self)
-        self._own: tuple[float, float] | None = None
+        self._following = False
+        self._told: tuple[float, float] | None = None
         self.plot = MultiplesPlot(self.time_range, lambda: bridge.state)
         self.plot.setToolTip(
             "Bars: pose difference, coloured by timing. Line: misalignment, above the middle where"
@@ -236,26 +237,34 @@ class MultiplesView(QWidget):
             return
         self.time_range.set_frames(reference.frames)
         self.plot.time_axis.set_clock(float(reference.rate), reference.first_frame)
-        if state.linked is not None and state.shown != self._own:
-            whole = state.shown[1] - state.shown[0] >= state.linked.frames[1]
-            edges = (state.linked.reference_of(edge) for edge in state.shown)
-            self._own = state.shown
-            first, last = edges
-            self.time_range.show(*((-0.5, reference.frames) if whole else (first, last)))
+        if state.linked is not None and state.shown != self._told:
+            self._follow_range(state.linked, state.shown)
         self.plot.set_frame(state.frame)
         self.plot.refresh()
         self._names.update()
 
+    def _follow_range(self, linked: Linked, shown: tuple[float, float]) -> None:
+        """Show the reference's part of a stretch of the source."""
+        self._told = shown
+        self._following = True
+        if shown[1] - shown[0] >= linked.frames[1]:
+            self.time_range.whole()
+        else:
+            first, last = (linked.reference_of(edge) for edge in shown)
+            self.time_range.show(first, last)
+        self._following = False
+
     def _tell_range(self) -> None:
         linked = self._bridge.state.linked
-        if linked is None or not self._bridge.ui.multiples:
+        # What was only taken over must not come back, rounded, as a wish of its own.
+        if linked is None or self._following or not self._bridge.ui.multiples:
             return
         if self.time_range.is_whole:
-            self._own = (-0.5, linked.frames[1] - 0.5)
+            self._told = (-0.5, linked.frames[1] - 0.5)
         else:
             start, end = self.time_range.start, self.time_range.end
-            self._own = float(linked.source_of(start)), float(linked.source_of(end))
-        self._bridge.sitting.show(*self._own)
+            self._told = float(linked.source_of(start)), float(linked.source_of(end))
+        self._bridge.sitting.show(*self._told)
 
     def changeEvent(self, event: QEvent) -> None:
         """Follow the theme."""

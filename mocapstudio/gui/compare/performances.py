@@ -16,7 +16,7 @@ from mocapstudio.gui.compare.bridge import CompareBridge
 from mocapstudio.gui.compare.naming import short_names
 from mocapstudio.gui.widgets.parts import ElidedLabel, header, label, panel
 from mocapstudio.review.comparing import Compared, ComparingState
-from mocapstudio.review.comparing_state import only_heads_differ
+from mocapstudio.review.comparing_state import only_view_differs
 
 Index = QModelIndex | QPersistentModelIndex
 
@@ -203,7 +203,7 @@ class PerformancesView(QFrame):
         self._bridge.sitting.choose(self.model.source(index.row()).id)
 
     def _follow(self, old: ComparingState, new: ComparingState) -> None:
-        if not only_heads_differ(old, new):
+        if not only_view_differs(old, new):
             self._show(new)
 
     def restyle(self) -> None:

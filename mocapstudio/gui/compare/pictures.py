@@ -42,6 +42,7 @@ class PicturesView(QWidget):
         self.setObjectName("compare-pictures")
         self._bridge = bridge
         self._shown: ComparingState | None = None
+        self._following = False
         self.time_range = TimeRange(self)
         self.difference = DifferencePlot(self.time_range)
         self.misalignment = MisalignmentPlot(self.time_range)
@@ -122,7 +123,7 @@ class PicturesView(QWidget):
         if anew:
             self._show_comparison(new)
         elif was is not None and new.shown != was.shown:
-            self.time_range.show(*new.shown)
+            self._follow_range(new)
         if anew or (was is not None and new.row != was.row):
             self._show_row(new)
         if anew or (was is not None and (new.segments, new.segment) != (was.segments, was.segment)):
@@ -134,8 +135,9 @@ class PicturesView(QWidget):
         comparison = state.comparison
         true_speed = state.parameters.true_speed
         if comparison is not None:
+            self._following = True
             self.time_range.set_frames(frames_wide(comparison, true_speed))
-            self.time_range.show(*state.shown)
+            self._follow_range(state)
             if state.source is not None:
                 take = state.source.take
                 self.difference.time_axis.set_clock(float(take.rate), take.first_frame)
@@ -188,7 +190,15 @@ class PicturesView(QWidget):
     def _arrange(self) -> None:
         self._margin.arrange(self.heat.rows, self.heat.bands)
 
+    def _follow_range(self, state: ComparingState) -> None:
+        self._following = True
+        self.time_range.show(*state.shown)
+        self._following = False
+
     def _tell_range(self) -> None:
+        # What was only taken over, and clipped, must not come back as a wish of its own.
+        if self._following:
+            return
         self._bridge.sitting.show(self.time_range.start, self.time_range.end)
 
     def changeEvent(self, event: QEvent) -> None:

@@ -17,9 +17,11 @@ from mocapstudio.gui.compare import colours as kinds
 from mocapstudio.gui.compare.bridge import CompareBridge
 from mocapstudio.gui.widgets.parts import Hint
 from mocapstudio.review.comparing import ComparingState
-from mocapstudio.review.comparing_state import only_heads_differ
+from mocapstudio.review.comparing_state import differing
 
 Index = QModelIndex | QPersistentModelIndex
+
+_SHOWN = {"reference", "sources", "chosen", "segments", "segment", "parameters"}
 
 _COLUMNS = (
     ("Name", "What is done; double click to change it"),
@@ -46,11 +48,18 @@ class SegmentsModel(QAbstractTableModel):
 
     def show(self, state: ComparingState) -> None:
         """Show other segments."""
-        self.beginResetModel()
         found: Sequence[CarriedSegment | None] = [None] * len(state.segments)
         if state.linked is not None:
             found = state.linked.carried(state.segments)
-        self._rows = tuple(zip(state.segments, found, strict=True))
+        rows = tuple(zip(state.segments, found, strict=True))
+        if rows and len(rows) == len(self._rows):
+            # Nothing moves: a name that is being typed stays open.
+            self._rows = rows
+            last = self.index(len(rows) - 1, len(_COLUMNS) - 1)
+            self.dataChanged.emit(self.index(0, 0), last)
+            return
+        self.beginResetModel()
+        self._rows = rows
         self.endResetModel()
 
     def rowCount(self, _parent: Index = QModelIndex()) -> int:  # noqa: B008
@@ -188,7 +197,8 @@ class SegmentsView(QFrame):
                 head.resizeSection(section, width)
 
     def _follow(self, old: ComparingState, new: ComparingState) -> None:
-        if not only_heads_differ(old, new):
+        # Nothing else may end the typing of a name.
+        if differing(old, new) & _SHOWN:
             self._show(new)
 
     def _show(self, state: ComparingState) -> None:

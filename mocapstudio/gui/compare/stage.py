@@ -22,7 +22,7 @@ from mocapstudio.gui.viewport.camera import Turntable
 from mocapstudio.gui.viewport.overlay import Bar
 from mocapstudio.gui.viewport.palette import Colour, palette
 from mocapstudio.review.comparing import ComparingState
-from mocapstudio.review.comparing_state import only_heads_differ
+from mocapstudio.review.comparing_state import only_view_differs
 
 _ROOM = 1.35
 _GIRTH = {Part.REFERENCE: 1.0, Part.SOURCE: 1.0, Part.OTHER: 0.6}
@@ -108,7 +108,7 @@ class StageView(QWidget):
     # -- state
 
     def _show_state(self, old: ComparingState, new: ComparingState) -> None:
-        if not only_heads_differ(old, new):
+        if not only_view_differs(old, new):
             self._troupe.keep(new)
             self._frame_again |= old.reference is not new.reference or not old.sources
             self._cast()

@@ -20,7 +20,7 @@ from mocapstudio.gui.dialogs.question import confirm
 from mocapstudio.gui.dialogs.rate import ask_rate
 from mocapstudio.gui.workspaces.workspace import Answers, Workspace
 from mocapstudio.review.comparing import ComparingState
-from mocapstudio.review.comparing_state import only_heads_differ
+from mocapstudio.review.comparing_state import only_view_differs
 
 if TYPE_CHECKING:
     from mocapstudio.gui.main_window import MainWindow
@@ -109,7 +109,7 @@ class CompareWorkspace(Workspace):
         self.desk.remember()
 
     def _follow(self, old: ComparingState, new: ComparingState) -> None:
-        if not only_heads_differ(old, new):
+        if not only_view_differs(old, new):
             self._show(new)
             self.answers_changed.emit()
 
