@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -86,13 +87,19 @@ class Switching(QObject):
 
     def _get(self, name: str) -> Workspace:
         if name not in self._made:
-            entry = next(one for one in WORKSPACES if one.name == name)
-            made = entry.make(self._window)
+            made = self._make(next(one.made_by for one in WORKSPACES if one.name == name))
             self._made[name] = made
             self.pages.addWidget(made)
             self._window.toolbar.add_tools(name, made.tools())
             made.answers_changed.connect(partial(self._answer_of, made))
         return self._made[name]
+
+    def _make(self, made_by: str) -> Workspace:
+        if not made_by:
+            return self._window.workspace
+        module, _, name = made_by.partition(":")
+        workspace: Workspace = getattr(import_module(module), name)(self._window)
+        return workspace
 
     def _answer_of(self, workspace: Workspace) -> None:
         if workspace is self._front:

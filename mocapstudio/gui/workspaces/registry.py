@@ -2,13 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from mocapstudio.gui.main_window import MainWindow
-    from mocapstudio.gui.workspaces.workspace import Workspace
 
 
 @dataclass(frozen=True)
@@ -27,8 +21,10 @@ class Entry:
         Its shortcut.
     icon
         Name of an icon.
-    make
-        Builds it, the first time it is entered.
+    made_by
+        ``module:class`` that is called with the window, the first time the workspace is entered;
+        empty for the one that is there from the start. A name instead of the class itself: menus
+        and views know the workspaces, which know the views.
     """
 
     name: str
@@ -36,31 +32,15 @@ class Entry:
     tip: str
     key: str
     icon: str
-    make: Callable[[MainWindow], Workspace]
-
-
-def _review(window: MainWindow) -> Workspace:
-    return window.workspace
-
-
-def _contacts(window: MainWindow) -> Workspace:
-    from mocapstudio.gui.workspaces.contacts import ContactsWorkspace
-
-    return ContactsWorkspace(window)
-
-
-def _compare(window: MainWindow) -> Workspace:
-    from mocapstudio.gui.workspaces.compare import CompareWorkspace
-
-    return CompareWorkspace(window)
+    made_by: str = ""
 
 
 # The order is that of the switch.
 WORKSPACES = (
     Entry("review", "&Review", "See what is wrong in a take, decide, export",
-          "Ctrl+1", "flag", _review),
+          "Ctrl+1", "flag"),
     Entry("contacts", "C&ontacts", "Plant the feet, join the hands",
-          "Ctrl+2", "link", _contacts),
+          "Ctrl+2", "link", "mocapstudio.gui.workspaces.contacts:ContactsWorkspace"),
     Entry("compare", "&Compare", "Set performances beside a reference",
-          "Ctrl+3", "compare", _compare),
+          "Ctrl+3", "compare", "mocapstudio.gui.workspaces.compare:CompareWorkspace"),
 )  # fmt: skip
