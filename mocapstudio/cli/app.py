@@ -25,6 +25,7 @@ COMMANDS = {
     "detect": "Find what is wrong in takes and how badly.",
     "clean": "Repair all that is found in takes, and write them.",
     "contacts": "Find or read contacts, measure foot skate, remove it.",
+    "solve": "Solve markers to the skeleton of a template.",
     "convert": "Write a take in another format.",
     "compare": "Compare performances with a reference: early, late, different.",
     "align": "Align a stream with a reference, frame by frame.",

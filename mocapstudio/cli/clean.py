@@ -12,6 +12,7 @@ import typer
 from mocapstudio.cli.contact_options import Partner, by_take
 from mocapstudio.cli.detection_options import ModeOption, Quick, Threshold
 from mocapstudio.cli.output import JsonPath, check_writable, write_json
+from mocapstudio.cli.solving import TemplateOption
 from mocapstudio.cli.take_options import Context, TakeOptions, with_take_options
 from mocapstudio.motion.errors import MocapError
 
@@ -48,6 +49,7 @@ def clean(
     threshold: Threshold = None,
     mode: ModeOption = None,
     quick: Quick = False,
+    template: TemplateOption = None,
     json_path: JsonPath = None,
     *,
     reading: TakeOptions,
@@ -66,7 +68,7 @@ def clean(
 
     chosen = parameters(threshold, mode)
     check_writable(json_path)
-    work = Workload(reading)
+    work = Workload(reading, template=template)
     files = work.files(takes)
     context_files = work.files(context or ())
     touched = by_take(contacts, files)

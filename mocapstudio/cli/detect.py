@@ -9,6 +9,7 @@ import typer
 
 from mocapstudio.cli.detection_options import ModeOption, Quick, Threshold
 from mocapstudio.cli.output import JsonPath, check_writable, write_json, write_npz
+from mocapstudio.cli.solving import TemplateOption
 from mocapstudio.cli.take_options import Context, TakeOptions, with_take_options
 from mocapstudio.motion.errors import MocapError
 
@@ -33,6 +34,7 @@ def detect(
     threshold: Threshold = None,
     mode: ModeOption = None,
     quick: Quick = False,
+    template: TemplateOption = None,
     map_path: MapPath = None,
     json_path: JsonPath = None,
     *,
@@ -48,7 +50,7 @@ def detect(
 
     chosen = parameters(threshold, mode)
     check_writable(json_path)
-    work = Workload(reading)
+    work = Workload(reading, template=template)
     files = work.files(takes)
     maps = _MapFiles(map_path, several=len(files) > 1)
     others = work.context(context)

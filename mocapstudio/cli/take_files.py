@@ -13,6 +13,7 @@ from mocapstudio.cli.errors import BAD_INPUT, DONE, complain, is_bad_input
 from mocapstudio.cli.take_options import TakeOptions
 from mocapstudio.motion.errors import CancelledError
 from mocapstudio.motion.joint_map import read_joint_map, rename_joints
+from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.motion.take import Take
 
 _SHOWN_PROBLEMS = 3
@@ -24,7 +25,9 @@ class Workload:
 
     options: TakeOptions
     failed: bool = False
+    template: Path | None = None
     _read: dict[Path, list[Take]] = field(default_factory=dict)
+    _body: Take | None = None
 
     @property
     def exit_code(self) -> int:
@@ -59,14 +62,32 @@ class Workload:
         Raises
         ------
         FileError
-            If the file cannot be read as takes.
+            If the file cannot be read as takes; without a template also if it holds markers.
         """
         known = self._read.get(path.resolve())
         if known is not None:
             return known
-        takes, report = formats.read(path, self.options.reading())
+        if self.template is None:
+            takes, report = formats.read(path, self.options.reading())
+            _warn(report)
+            return takes
+        found, report = formats.read_any(path, self.options.reading())
         _warn(report)
-        return takes
+        return [self._with_joints(path, take) for take in found]
+
+    def _with_joints(self, path: Path, take: Take | MarkerTake) -> Take:
+        """Return a take as it is, or its markers solved to the template; warnings are told."""
+        if isinstance(take, Take) or self.template is None:
+            assert isinstance(take, Take)
+            return take
+        from mocapstudio.cli.solving import read_template, solved
+
+        if self._body is None:
+            self._body = read_template(self.template, self.options)
+        result = solved(path, take, self._body)
+        for warning in result.warnings:
+            print(f"warning: {path}: -: {warning}", file=sys.stderr)
+        return result.take
 
     def context(self, paths: Sequence[Path] | None) -> tuple[Take, ...]:
         """Read the takes of a context, joints renamed by the joint map; bad ones are left out."""

@@ -61,7 +61,8 @@ class Targets:
                 self.out.mkdir(parents=True, exist_ok=True)
             except OSError as error:
                 raise FileError(self.out, f"cannot be made: {error.strerror}") from error
-            suffix = written_suffix(path.suffix)
+            # Markers solved to joints have no file of joints behind them.
+            suffix = written_suffix(path.suffix) if take.source is not None else ".bvh"
             target = self.out / f"{path.stem if alone else take.name}{suffix}"
         elif not alone:
             target = self.out.with_name(f"{self.out.stem}-{take.name}{self.out.suffix}")

@@ -23,6 +23,8 @@ _OF_ONE = 0.04
 """Share that one bone may well differ from the others."""
 _SHORT = 5e-3
 """Metres below which a bone's length is not looked for."""
+_INDEPENDENT = 10
+"""Frames that tell as much as all do together: skin slides alike in many of them."""
 _GROWTH = 0.15
 """Share by which lengths change in one step at most."""
 
@@ -108,7 +110,8 @@ def _reduced(
     whole = np.einsum("kri,krj->ij", own, own, optimize=True)
     whole -= np.einsum("kpi,kpj->ij", across, per_unknown, optimize=True)
     side = np.einsum("kri,kr->i", own, weighed) - np.einsum("kpi,kp->i", across, poses)
-    return whole, side, (poses, per_unknown)
+    share = min(1.0, _INDEPENDENT / len(slopes))
+    return share * whole, share * side, (poses, per_unknown)
 
 
 def _roots(slopes: Array, markers: int) -> Array:
@@ -136,7 +139,6 @@ def _by_unknowns(body: Body, pose: Pose, unknowns: _Unknowns) -> Array:
 
 
 def _add_priors(matrix: Array, right: Array, body: Body, expected: Array, lengths: Array) -> None:
-    # Frames tell of one thing together: a marker that is off is off in all of them.
     spreads = np.repeat(body.attachment.spreads, 3)
     precision = np.concatenate(
         [spreads**-2.0, [_OVERALL**-2.0], np.full(len(lengths) - 1, _OF_ONE**-2.0)]

@@ -183,7 +183,9 @@ def _thin(body: Body) -> list[str]:
     names = body.template.skeleton.names
     carried = np.bincount(body.attachment.joints, minlength=len(names))
     thin = [names[j] for j in np.unique(body.attachment.joints) if carried[j] < 2]
-    return [f"{name} has a single marker: its twist is a guess" for name in thin]
+    if not thin:
+        return []
+    return [f"a single marker each on {', '.join(thin)}: what it leaves open is a guess"]
 
 
 def _as_take(markers: MarkerTake, template: Take, body: Body, pose: Pose) -> Take:
