@@ -53,12 +53,7 @@ class Viewing(Core):
         """Take a performer out of the scene and forget all about it, in the history too."""
         self._take(performer)
         left = tuple(p for p in self._state.scene.performers if p.id != performer)
-        self._history = self._history.forget(performer)
-        self._analyses.forget(performer)
-        self._results.forget(performer)
-        self._sources.forget(performer)
-        self._uncorrected.forget(performer)
-        self._queues.pop(performer, None)
+        self._forget(performer)
         changes: dict[str, Any] = {"scene": Scene(left)}
         if self._state.active == performer:
             heir = next((p for p in left if not p.partner), left[0] if left else None)
@@ -68,6 +63,33 @@ class Viewing(Core):
             changes |= {"active": active, "selection": Selection(active), "frame": frame}
         self.recorder.closed(performer)
         self._put(**changes)
+
+    def replace_take(self, performer: str, take: Take) -> None:
+        """Put another reading of its file in the place of a performer's take.
+
+        All about the performer is forgotten, in the history too.
+        """
+        self._take(performer)
+        old = self._state.scene.performer(performer)
+        new = replace(old, take=take)
+        self._forget(performer)
+        performers = (new if one is old else one for one in self._state.scene.performers)
+        changes: dict[str, Any] = {"scene": Scene(tuple(performers))}
+        if self._state.active == performer:
+            # The rate may be another one now; the row of the file that is shown stays.
+            frame = min(self._state.frame, take.frames - 1)
+            changes |= {"selection": Selection(performer), "frame": frame}
+        self.recorder.closed(performer)
+        self.recorder.opened(new)
+        self._put(**changes)
+
+    def _forget(self, performer: str) -> None:
+        self._history = self._history.forget(performer)
+        self._analyses.forget(performer)
+        self._results.forget(performer)
+        self._sources.forget(performer)
+        self._uncorrected.forget(performer)
+        self._queues.pop(performer, None)
 
     def set_active(self, performer: str) -> None:
         """Put another performer under review, at the same moment of the scene."""
