@@ -22,7 +22,7 @@ def allowed(state: DocumentState) -> dict[str, bool]:
     decided = item is not None and item.verdict is not Verdict.OPEN
     accepted = item is not None and item.verdict is Verdict.ACCEPTED
     found = {
-        "partner": take, "export": take, "report": take, "close-take": take,
+        "partner": take, "export": take, "report": take, "import-report": take, "close-take": take,
         "save": take, "save-as": take,
         "analyse": take, "play": take, "frame-back": take, "frame-on": take,
         "ten-back": take, "ten-on": take, "first": take, "last": take, "loop": take,

@@ -18,9 +18,13 @@ from mocapstudio.gui.dialogs.files import (
     ask_where_to_write,
     takes_filter,
 )
+from mocapstudio.gui.dialogs.import_report import ImportReportDialog
 from mocapstudio.gui.dialogs.question import ask_to_save, confirm
+from mocapstudio.gui.dialogs.rate import ask_rate
 from mocapstudio.gui.handing_over import HandingOver
+from mocapstudio.gui.markers_desk import MarkersDesk
 from mocapstudio.gui.opening import Opening, is_session
+from mocapstudio.gui.rereading import Rereading
 from mocapstudio.motion.progress import Progress
 from mocapstudio.review.document import Document
 from mocapstudio.review.journal import recover
@@ -50,6 +54,11 @@ class FilesDesk(QObject):
         self._messages, self._journalling = window.messages, window.journalling
         self.opening = Opening(window.bridge, window.jobs, window.messages, self)
         self.opening.session_read.connect(self._swap)
+        self.opening.rate_wanted.connect(partial(ask_rate, window))
+        self.opening.report_wanted.connect(self.show_import_report)
+        self.rereading = Rereading(window.bridge, window.jobs, window.messages, self.opening, self)
+        self.markers = MarkersDesk(window, self.opening)
+        self._import_report: ImportReportDialog | None = None
         self.handing_over = HandingOver(window.bridge, window.jobs, window.messages, self)
 
     def ask_open(self) -> None:
@@ -78,6 +87,21 @@ class FilesDesk(QObject):
             self._unless_dirty(partial(self.opening.open_session, sessions[0]))
         if takes or partners:
             self.opening.open(takes, partners)
+
+    def show_import_report(self) -> None:
+        """Show what was odd about the files that are open, beside the desk."""
+        if self._import_report is None:
+            self._import_report = ImportReportDialog(
+                self.opening.imports, self.rereading, self._window
+            )
+            self._import_report.closed.connect(self._forget_import_report)
+        self._import_report.show_file(self.opening.imports.active)
+        self._import_report.show()
+        self._import_report.raise_()
+        self._import_report.activateWindow()
+
+    def _forget_import_report(self) -> None:
+        self._import_report = None
 
     def drop(self, zone: str, paths: Sequence[Path]) -> None:
         """Do with dropped files what their zone says."""

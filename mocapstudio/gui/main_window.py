@@ -19,8 +19,8 @@ from mocapstudio.gui.files_desk import FilesDesk
 from mocapstudio.gui.jobs import Jobs
 from mocapstudio.gui.journalling import Journalling, left_behind
 from mocapstudio.gui.messages import Messages
-from mocapstudio.gui.opening import AS_THEY_ARE, Manner
 from mocapstudio.gui.playback import Playback
+from mocapstudio.gui.reading import AS_THEY_ARE, Manner
 from mocapstudio.gui.reasons import Reasons
 from mocapstudio.gui.status_bar import DeskStatusBar
 from mocapstudio.gui.switching import Switching

@@ -2,98 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Generator, Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
-from mocapstudio import formats
 from mocapstudio.gui import settings
 from mocapstudio.gui.document import DocumentBridge
+from mocapstudio.gui.imports import Imports
 from mocapstudio.gui.jobs import Jobs
-from mocapstudio.gui.messages import Messages
-from mocapstudio.gui.trouble import Trouble, understand
-from mocapstudio.motion.errors import SkeletonMismatchError
-from mocapstudio.motion.joint_map import rename_joints
+from mocapstudio.gui.messages import Link, Messages
+from mocapstudio.gui.reading import AS_THEY_ARE, Read, reading, reading_context
+from mocapstudio.gui.trouble import Trouble
 from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.recording import same_recording
 from mocapstudio.motion.take import Take
 from mocapstudio.review.session_file import SUFFIX, load
 
 if TYPE_CHECKING:
-    from mocapstudio.formats.report import ImportReport
+    from fractions import Fraction
+
     from mocapstudio.review.document import Document
-
-
-@dataclass
-class Read:
-    """What came of reading files: the takes, the reports, and what could not be read."""
-
-    takes: list[Take] = field(default_factory=list)
-    reports: list[ImportReport] = field(default_factory=list)
-    troubles: list[Trouble] = field(default_factory=list)
-
-
-@dataclass(frozen=True)
-class Manner:
-    """How takes are read in this sitting.
-
-    Parameters
-    ----------
-    options
-        What replaces the files' own rate, unit and up axis; None for what they say.
-    renamed
-        Joints of the context, by name, and what they are called in the take.
-    """
-
-    options: formats.ReadOptions | None = None
-    renamed: Mapping[str, str] = field(default_factory=dict)
-
-
-AS_THEY_ARE = Manner()
-
-
-def reading(
-    paths: Sequence[Path], doing: str, manner: Manner = AS_THEY_ARE
-) -> Generator[Progress, None, Read]:
-    """Read files and folders; a bad file is noted and the others are read all the same."""
-    result = Read()
-    files: dict[Path, Path] = {}
-    for path in paths:
-        try:
-            files |= {one.resolve(): one for one in formats.find_takes([path])}
-        except Exception as error:
-            result.troubles.append(understand(error, doing))
-    for done, path in enumerate(files.values()):
-        yield Progress(done / len(files), f"reading {path.name}")
-        try:
-            takes, report = formats.read(path, manner.options)
-        except Exception as error:
-            result.troubles.append(understand(error, doing))
-        else:
-            result.takes += takes
-            result.reports.append(report)
-    return result
-
-
-def reading_context(
-    paths: Sequence[Path], doing: str, take: Take | None, manner: Manner = AS_THEY_ARE
-) -> Generator[Progress, None, Read]:
-    """Read a context; what has another skeleton than the take under review is left out too."""
-    result = yield from reading(paths, doing, manner)
-    result.takes = [rename_joints(one, manner.renamed) for one in result.takes]
-    if take is not None:
-        from mocapstudio.similarity.texture import comparable_joints
-
-        for other in list(result.takes):
-            try:
-                comparable_joints(take, [other])
-            except SkeletonMismatchError as error:
-                result.takes.remove(other)
-                result.troubles.append(understand(error, doing))
-    return result
 
 
 class Opening(QObject):
@@ -117,6 +48,15 @@ class Opening(QObject):
     session_read = Signal(object)
     """Emitted with the document of a session that was read."""
 
+    markers_found = Signal(object, bool)
+    """Emitted with a tuple of marker takes, and whether they were meant as partners."""
+
+    rate_wanted = Signal(object, object)
+    """Emitted with files that state no frame rate, and what to call with one (a Fraction)."""
+
+    report_wanted = Signal()
+    """Emitted when the user wants to see what was odd about the files."""
+
     def __init__(
         self,
         bridge: DocumentBridge,
@@ -127,6 +67,7 @@ class Opening(QObject):
         super().__init__(parent)
         self._bridge, self._jobs, self._messages = bridge, jobs, messages
         self.manner = AS_THEY_ARE
+        self.imports = Imports(bridge, self)
 
     def open(self, paths: Iterable[Path], partners: Iterable[Path] = ()) -> None:
         """Open takes beside those that are open; the first becomes the one under review."""
@@ -161,10 +102,15 @@ class Opening(QObject):
             self._bridge.document.set_context((), ())
             return
         doing = "This could not be used as context"
+
+        def done(read: Read) -> None:
+            self._use_context(read, wanted)
+            self._ask_rate(read.rateless, lambda: self.set_context(wanted))
+
         self._jobs.start(
             "Reading the context",
             reading_context(wanted, doing, self._bridge.state.take, self.manner),
-            lambda read: self._use_context(read, wanted),
+            done,
             lambda error: self._messages.complain(error, doing),
             key="context",
         )
@@ -203,16 +149,33 @@ class Opening(QObject):
         doing: str,
         done: Callable[[Read], None],
     ) -> None:
+        def arrived(read: Read) -> None:
+            done(read)
+            self._ask_rate(read.rateless, lambda: self._read(read.rateless, title, doing, done))
+
         self._jobs.start(
             title,
             reading(paths, doing, self.manner),
-            done,
+            arrived,
             lambda error: self._messages.complain(error, doing),
         )
+
+    def _ask_rate(self, files: Sequence[Path], again: Callable[[], object]) -> None:
+        """Ask for the rate that files do not state, remember it for them, and go on."""
+
+        def answered(rate: Fraction) -> None:
+            for path in files:
+                self.manner = self.manner.with_own(path, replace(self.manner.of(path), fps=rate))
+            again()
+
+        if files:
+            self.rate_wanted.emit(tuple(files), answered)
 
     def _take_in(self, read: Read, paths: list[Path], *, partner: bool) -> None:
         document = self._bridge.document
         first = ""
+        for one in read.files:
+            self.imports.note(one)
         for take in read.takes:
             known = self._known(take)
             opened = known or document.open_take(take, partner=partner)
@@ -228,6 +191,12 @@ class Opening(QObject):
             self.opened.emit()
             self._tell_repairs(read)
         self._messages.complain_of(read.troubles)
+        if read.markers:
+            for markers in read.markers:
+                # Nothing on the desk shows yet how they were read: a rate is asked for again.
+                if markers.source is not None:
+                    self.manner = self.manner.without_own(markers.source.path)
+            self.markers_found.emit(tuple(read.markers), partner)
 
     def _known(self, take: Take) -> str:
         for performer in self._bridge.state.scene.performers:
@@ -248,16 +217,18 @@ class Opening(QObject):
 
     def _tell_repairs(self, read: Read) -> None:
         odd = [
-            (report.path.name, problem)
-            for report in read.reports
-            for problem in report.problems
+            (one.path.name, problem)
+            for one in read.files
+            for problem in one.report.problems
             if not problem.guess
         ]
         if odd:
             name, problem = odd[0]
             place = "" if problem.line is None else f" line {problem.line}:"
             more = f" (and {len(odd) - 1} more)" if len(odd) > 1 else ""
-            self._messages.tell(f"{name}:{place} {problem.what}; {problem.done}{more}")
+            words = f"{name}:{place} {problem.what}; {problem.done}{more}"
+            tip = "See what was odd, and read the file otherwise"
+            self._messages.tell(words, Link("Import report", tip, self.report_wanted.emit))
 
 
 def is_session(path: Path) -> bool:

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QLabel, QPushButton, QStatusBar
 
 from mocapstudio.gui import wording
 from mocapstudio.gui.document import DocumentBridge, only_frame_differs
-from mocapstudio.gui.messages import Messages
+from mocapstudio.gui.messages import Link, Messages
 from mocapstudio.gui.widgets.parts import ElidedLabel, label
 from mocapstudio.review.state import DocumentState
 
@@ -41,9 +41,9 @@ class DeskStatusBar(QStatusBar):
         self._link.setToolTip("Open the folder that the file lies in")
         self._link.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self._link.setCursor(Qt.CursorShape.PointingHandCursor)
-        self._link.clicked.connect(self._show_folder)
+        self._link.clicked.connect(self._go)
         self._link.hide()
-        self._file: Path | None = None
+        self._about: Path | Link | None = None
         self._facts: QLabel = label("", "", "facts")
         self.addWidget(self._note, 1)
         self.addWidget(self._link)
@@ -55,16 +55,23 @@ class DeskStatusBar(QStatusBar):
         bridge.changed.connect(self._follow)
         self._show(bridge.state)
 
-    def _tell(self, text: str, file: Path | None) -> None:
+    def _tell(self, text: str, about: Path | Link | None) -> None:
         self._note.show_text(text)
-        self._file = file
-        self._link.setVisible(file is not None)
+        self._about = about
+        words, tip = "Show in folder", "Open the folder that the file lies in"
+        if isinstance(about, Link):
+            words, tip = about.text, about.tip
+        self._link.setText(words)
+        self._link.setToolTip(tip)
+        self._link.setVisible(about is not None)
         if text:
             self._timer.start(_SHOWN_MS)
 
-    def _show_folder(self) -> None:
-        if self._file is not None:
-            QDesktopServices.openUrl(QUrl.fromLocalFile(str(self._file.parent)))
+    def _go(self) -> None:
+        if isinstance(self._about, Link):
+            self._about.go()
+        elif self._about is not None:
+            QDesktopServices.openUrl(QUrl.fromLocalFile(str(self._about.parent)))
 
     def _follow(self, old: DocumentState, new: DocumentState) -> None:
         if not only_frame_differs(old, new):

@@ -14,6 +14,7 @@ from mocapstudio import __version__
 from mocapstudio.cleaning.parameters import CALIBRATED, PAPER
 from mocapstudio.gui import settings
 from mocapstudio.gui.dialogs.shortcuts import ShortcutsDialog
+from mocapstudio.gui.import_link import ImportLink
 from mocapstudio.gui.journalling import discard
 
 if TYPE_CHECKING:
@@ -41,6 +42,8 @@ def _wire_files(window: MainWindow) -> None:
     on("save-as", files.save_as)
     on("export", files.export)
     on("report", files.report)
+    on("import-report", files.show_import_report)
+    window.statusBar().addPermanentWidget(ImportLink(window.bridge, files.opening))
     on("close-take", files.close_take)
     on("quit", window.close)
     window.welcome.wanted.connect(lambda path: files.open_paths([path]))

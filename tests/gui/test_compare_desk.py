@@ -13,7 +13,7 @@ from made_comparison import shortened
 from made_takes import paced, walking
 from mouse import click, drag, wheel
 from PySide6.QtCore import QEvent, QEventLoop, QPointF, QSettings, Qt
-from PySide6.QtWidgets import QApplication, QInputDialog, QLineEdit, QTableView
+from PySide6.QtWidgets import QApplication, QLineEdit, QTableView
 from test_desk_layout import cut_texts
 
 from mocapstudio import formats
@@ -367,12 +367,8 @@ def test_markers_with_gaps_are_drawn_and_compared(hands, data):
 def test_a_missing_frame_rate_is_asked_for(hands, data):
     workspace = hands.window.switching.front
     workspace.working.set_reference(data / "karate_rmocap_GPL3" / "mawashi.geri.left.1.csv")
-    hands.see(lambda: isinstance(QApplication.activeModalWidget(), QInputDialog))
-    dialog = QApplication.activeModalWidget()
-    field = dialog.findChild(QLineEdit)
-    field.selectAll()
-    hands.qtbot.keyClicks(field, "100")
-    hands.qtbot.keyClick(field, Qt.Key.Key_Return)
+    hands.see(lambda: hands.shows("rate-dialog"))
+    hands.type("rate-text", "100")
     hands.see(lambda: workspace.bridge.state.reference is not None)
     assert workspace.bridge.state.reference.rate == 100
 

@@ -1,0 +1,143 @@
+"""Reading a file that is open once more, in another way."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+from PySide6.QtCore import QObject
+
+from mocapstudio.formats import ImportReport, ReadOptions, Recording, read_any
+from mocapstudio.gui.document import DocumentBridge
+from mocapstudio.gui.imports import Imports, imported
+from mocapstudio.gui.jobs import Jobs
+from mocapstudio.gui.messages import Messages
+from mocapstudio.gui.opening import Opening
+from mocapstudio.motion.errors import NoRateError
+from mocapstudio.motion.progress import Progress
+from mocapstudio.motion.take import Take
+from mocapstudio.review.model import Performer, Sitting
+
+Reading = tuple[list[Recording], ImportReport, ReadOptions]
+
+
+class Rereading(QObject):
+    """Puts other readings of files in the place of those that are open.
+
+    Parameters
+    ----------
+    bridge
+        The document's door.
+    jobs
+        Runs the reading.
+    messages
+        Is told what went wrong.
+    opening
+        Remembers how files are read.
+    parent
+        Qt's parent.
+    """
+
+    def __init__(
+        self,
+        bridge: DocumentBridge,
+        jobs: Jobs,
+        messages: Messages,
+        opening: Opening,
+        parent: QObject | None = None,
+    ) -> None:
+        super().__init__(parent)
+        self._bridge, self._jobs, self._messages = bridge, jobs, messages
+        self._opening = opening
+
+    @property
+    def _imports(self) -> Imports:
+        return self._opening.imports
+
+    def touched(self, path: Path) -> tuple[str, ...]:
+        """Return the performers of a file about whom something was decided: it would be lost."""
+        sitting = self._bridge.state.sitting
+        return tuple(one.id for one in self._performers(path) if _touched(sitting, one.id))
+
+    def look(self, path: Path) -> None:
+        """Find out what is odd about a file that came with a session."""
+        rates = [one.take.rate for one in self._performers(path)]
+
+        def work() -> Reading:
+            options = self._opening.manner.of(path)
+            try:
+                return (*read_any(path, options), options)
+            except NoRateError:
+                # It was told when the file was first opened, and the session kept it.
+                options = replace(options, fps=rates[0] if rates else None)
+                return (*read_any(path, options), options)
+
+        self._start(path, work, self._note)
+
+    def read(self, path: Path, options: ReadOptions) -> None:
+        """Read a file anew; what was decided about its performers is forgotten.
+
+        Where it cannot be read so, all stays as it was.
+        """
+        self._start(path, lambda: (*read_any(path, options), options), partial(self._replace, path))
+
+    def _start(
+        self, path: Path, read: Callable[[], Reading], done: Callable[[Reading], None]
+    ) -> None:
+        def work() -> Generator[Progress, None, Reading]:
+            yield Progress(0.0, f"reading {path.name}")
+            return read()
+
+        self._jobs.start(
+            f"Reading {path.name}",
+            work(),
+            done,
+            lambda error: self._messages.complain(
+                error, f"{path.name} could not be read like this"
+            ),
+            key=f"read {path}",
+        )
+
+    def _note(self, reading: Reading) -> None:
+        self._imports.note(imported(*reading))
+
+    def _replace(self, path: Path, reading: Reading) -> None:
+        found, report, options = reading
+        takes = [one for one in found if isinstance(one, Take)]
+        self._opening.manner = self._opening.manner.with_own(path, options)
+        self._note((list(takes or found), report, options))
+        if not takes:
+            # What was solved from them stays; they have to be solved again.
+            self._opening.markers_found.emit(tuple(found), False)
+            return
+        self._put(self._performers(path), takes)
+        self._messages.tell(f"{path.name} was read again.")
+
+    def _put(self, performers: Sequence[Performer], takes: Sequence[Take]) -> None:
+        document = self._bridge.document
+        left = {one.source.performer if one.source else 0: one for one in takes}
+        for old in performers:
+            number = old.take.source.performer if old.take.source else 0
+            new = left.pop(number, None)
+            if new is None:
+                document.close_performer(old.id)
+            else:
+                document.replace_take(old.id, new)
+        for take in left.values():
+            document.open_take(take, partner=all(one.partner for one in performers))
+
+    def _performers(self, path: Path) -> list[Performer]:
+        wanted, scene = path.resolve(), self._bridge.state.scene
+        return [one for one in scene.performers if self._imports.file_of(one.take) == wanted]
+
+
+def _touched(sitting: Sitting, performer: str) -> bool:
+    named = {name for name, _ in sitting.trims}
+    named |= {one.performer for one in sitting.edits}
+    named |= {one.performer for one in sitting.decisions}
+    named |= {one.performer for one in sitting.protected}
+    named |= {one.performer for one in sitting.contacts}
+    named |= {one.performer for one in sitting.points}
+    return performer in named
