@@ -80,12 +80,12 @@ def window(qapp, tmp_path_factory):
 def hands(window, qtbot):
     """A user at that desk, who finds it empty and in the Compare workspace."""
     user = Hands(window, qtbot)
+    window.jobs.cancel()
     window.bridge.replace(Document())
     window.activateWindow()
-    qtbot.waitUntil(window.isActiveWindow)
+    qtbot.waitUntil(window.isActiveWindow, timeout=20_000)
     user.press("3", CTRL)
     workspace = window.switching.front
-    window.jobs.cancel()
     workspace.bridge.sitting.clear()
     workspace.bridge.sitting.set_parameters(ComparisonParameters())
     workspace.bridge.set_ui(**asdict(CompareUi()))

@@ -14,7 +14,7 @@ COMPARE = (
             ("Ctrl+Shift+R",), "partner"),
     Command("compare-swap", "S&wap", "Let reference and chosen source change places",
             ("R",), "swap"),
-    Command("compare-remove", "Remo&ve Source", "Take the chosen source away", ("Shift+Del",),
+    Command("compare-remove", "Re&move Source", "Take the chosen source away", ("Shift+Del",),
             "delete"),
     Command("compare-next", "&Next Source", "Show the next source", ("N",), "next"),
     Command("compare-previous", "&Previous Source", "Show the previous source", ("P",),
