@@ -40,8 +40,8 @@ class MetresField(QDoubleSpinBox):
 
     def event(self, event: QEvent) -> bool:
         """Claim Escape and Enter."""
-        leaving = event.type() == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent)
-        if leaving and event.key() in _LEAVING:
+        overrides = event.type() == QEvent.Type.ShortcutOverride
+        if overrides and isinstance(event, QKeyEvent) and event.key() in _LEAVING:
             event.accept()
             return True
         return super().event(event)

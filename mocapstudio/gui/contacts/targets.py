@@ -112,7 +112,7 @@ def nearest_joint(others: Mapping[str, Take], place: Array, frame: int) -> tuple
 
 def joints_at(take: Take, frame: int) -> Array:
     """(J, 3) metres: the joints of a take at a frame."""
-    return take_pose(take, frame, frame + 1)[0][0]
+    return np.asarray(take_pose(take, frame, frame + 1)[0][0])
 
 
 def moved(reading: Reading, contact: Contact, place: Array, frame: int, *, upright: bool) -> Target:
