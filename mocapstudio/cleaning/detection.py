@@ -18,6 +18,7 @@ from mocapstudio.cleaning.parameters import PAPER, DetectionParameters
 from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.take import Take
+from mocapstudio.similarity.search import searching
 from mocapstudio.similarity.texture import (
     MotionTexture,
     body_motion,
@@ -25,7 +26,7 @@ from mocapstudio.similarity.texture import (
     motion_texture,
     texture_of,
 )
-from mocapstudio.similarity.words import Corpus, WordNeighbours, WordShape, searching, trim_count
+from mocapstudio.similarity.words import Corpus, WordNeighbours, WordShape, trim_count
 
 DEFAULTS = DetectionParameters()
 
@@ -67,7 +68,7 @@ def detect(
     motion = body_motion(take, joints)
     texture = texture_of(motion)
     corpus = Corpus.of([texture, *(motion_texture(one, joints) for one in context)])
-    neighbours = yield from _search(texture, corpus, parameters.neighbours, shape)
+    neighbours = yield from _search(texture, corpus, parameters, shape)
     yield Progress(0.6, "drawing the map")
     mean = mean_texture(texture, corpus, neighbours, shape)
     away = departure(texture, mean)
@@ -92,10 +93,11 @@ def detect(
 
 
 def _search(
-    texture: MotionTexture, corpus: Corpus, keep: int, shape: WordShape
+    texture: MotionTexture, corpus: Corpus, parameters: DetectionParameters, shape: WordShape
 ) -> Generator[Progress, None, WordNeighbours]:
     """Find the neighbours of all words of the whole body, with progress from 0.1 to 0.6."""
-    work = searching(texture, corpus, keep, trim_count(len(texture.joints), True), shape)
+    keep, trim = parameters.neighbours, trim_count(len(texture.joints), True)
+    work = searching(texture, corpus, keep, trim, shape, parameters.search)
     while True:
         try:
             done = next(work)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any
 
 from mocapstudio.motion.errors import ParameterError
+from mocapstudio.similarity.choices import AUTOMATIC, SEARCHES
 
 CALIBRATED = "calibrated"
 PAPER = "paper"
@@ -76,6 +77,20 @@ class DetectionParameters:
     hop: int = _parameter(5, "Hop", "frames at 24 fps", 1, 30, "Distance between source words")
     target_word: int = _parameter(
         20, "Target word", "frames at 24 fps", 5, 80, "Length of the words that are searched"
+    )
+    search: str = field(
+        default=AUTOMATIC,
+        metadata={
+            "schema": Schema(
+                "Neighbour search",
+                "",
+                None,
+                None,
+                "exact: every word of the context; indexed: candidates of an index first;"
+                " automatic: indexed where the context is large",
+                SEARCHES,
+            )
+        },
     )
 
     def __post_init__(self) -> None:

@@ -34,6 +34,7 @@ from mocapstudio.evaluation.repair_benchmark import (
     tuned_peers,
     untouched,
 )
+from mocapstudio.evaluation.search_speed import search_timing
 from mocapstudio.evaluation.speed_benchmark import growth, timing
 from mocapstudio.evaluation.tables import Table, detection_tables, repair_tables, speed_table
 from mocapstudio.motion.progress import Progress, run
@@ -112,8 +113,9 @@ def repair(
 def speed(
     data: Sequence[Path], seed: int, *, long: bool = True
 ) -> Generator[Progress, None, Report]:
-    """Measure speed; see `speed_benchmark.timing`."""
+    """Measure speed; see `speed_benchmark.timing` and `search_speed.search_timing`."""
     rows = yield from timing(data, seed=seed, long=long)
+    rows += yield from search_timing(data, seed=seed, long=long)
     record = {"speed": [row.to_json() for row in rows], "growth": growth(rows)}
     return _report("Speed", record, [speed_table(rows)], [], seed)
 

@@ -81,9 +81,18 @@ def pose_distances(source: F32, target: F32, trim: int, out: F32) -> None:
 
 @nb.njit(nogil=True, cache=True, fastmath=True)
 def _arrive(
-    distances: F32, start: int, i: int, j: int, cost: F32, length: F32, far: F32, width: int
+    distances: F32,
+    at: tuple[int, int],
+    i: int,
+    j: int,
+    cost: F32,
+    length: F32,
+    far: F32,
+    width: int,
 ) -> None:
     """Cheapest arrival in cell (i, j) by a diagonal step, for one chunk of targets.
+
+    `at` is where the chunk starts in a row, and how far apart two target frames lie there.
 
     What lies between two diagonal steps is nothing, or one or two steps along one of the words:
     a turn from one word to the other is never cheaper than the diagonal step that cuts it short.
@@ -95,10 +104,11 @@ def _arrive(
     a2, l2 = (one[j - 3], one_length[j - 3]) if j > 2 else (far, far)
     a3, l3 = (cost[(i - 2) % 4, j - 1], length[(i - 2) % 4, j - 1]) if i > 1 else (far, far)
     a4, l4 = (cost[(i - 3) % 4, j - 1], length[(i - 3) % 4, j - 1]) if i > 2 else (far, far)
-    here = distances[i, start + j :]
-    back = distances[i - 1, start + j - 1 :]
-    left = distances[i - 1, start + max(j - 2, 0) :]
-    down = distances[max(i - 2, 0), start + j - 1 :]
+    start, step = at
+    here = distances[i, start + j * step :]
+    back = distances[i - 1, start + (j - 1) * step :]
+    left = distances[i - 1, start + max(j - 2, 0) * step :]
+    down = distances[max(i - 2, 0), start + (j - 1) * step :]
     for t in range(width):
         b = back[t]
         best, count = a0[t], l0[t]
@@ -146,11 +156,12 @@ def _close(
 
 @nb.njit(nogil=True, cache=True, fastmath=True)
 def _dtw_chunk(
-    distances: F32, start: int, width: int, work: F32, best: F32, mean: F32, ends: I16
+    distances: F32, at: tuple[int, int], width: int, work: F32, best: F32, mean: F32, ends: I16
 ) -> None:
     """Fill the cost matrix of one chunk of targets and close every path that reaches an end."""
     cost, length, far = work[0], work[1], work[2, 0, 0]
     last, offsets = distances.shape[0] - 1, cost.shape[1]
+    start, step = at
     cost[:] = _FAR
     cost[0, 0, :width] = distances[0, start : start + width]
     length[0, 0] = _ONE
@@ -158,18 +169,18 @@ def _dtw_chunk(
         if i > 0:
             cost[i % 4, 0] = _FAR
         for j in range(1, offsets if i > 0 else 0):
-            _arrive(distances, start, i, j, cost, length, far, width)
-            at, steps = cost[i % 4, j], length[i % 4, j]
+            _arrive(distances, at, i, j, cost, length, far, width)
+            here, steps = cost[i % 4, j], length[i % 4, j]
             if i == last or j == offsets - 1:
-                _close(at, steps, at, at, 0, (i, j), best, mean, ends, width)
+                _close(here, steps, here, here, 0, (i, j), best, mean, ends, width)
             elif j >= offsets - 3:
-                one, two = distances[i, start + j + 1 :], distances[i, start + offsets - 1 :]
-                _close(
-                    at, steps, one, two, offsets - 1 - j, (i, offsets - 1), best, mean, ends, width
-                )
+                more, end = offsets - 1 - j, (i, offsets - 1)
+                one = distances[i, start + (j + 1) * step :]
+                two = distances[i, start + (offsets - 1) * step :]
+                _close(here, steps, one, two, more, end, best, mean, ends, width)
             if last > i >= last - 2:
-                one, two = distances[i + 1, start + j :], distances[last, start + j :]
-                _close(at, steps, one, two, last - i, (last, j), best, mean, ends, width)
+                one, two = distances[i + 1, start + j * step :], distances[last, start + j * step :]
+                _close(here, steps, one, two, last - i, (last, j), best, mean, ends, width)
 
 
 @nb.njit(nogil=True, cache=True, fastmath=True)
@@ -197,9 +208,42 @@ def dtw_word(distances: F32, offsets: int, out: F32, ends: I16) -> None:
     for start in range(0, words, _CHUNK):
         width = min(_CHUNK, words - start)
         best[:] = _FAR
-        _dtw_chunk(distances, start, width, work, best, mean, end)
+        _dtw_chunk(distances, (start, 1), width, work, best, mean, end)
         out[start : start + width] = mean[:width]
         ends[:, start : start + width] = end[:, :width]
+
+
+@nb.njit(nogil=True, cache=True, fastmath=True)
+def dtw_listed(distances: F32, offsets: int, starts: I64, out: F32, ends: I16) -> None:
+    """Do what `dtw_word` does, for listed target words only.
+
+    Parameters
+    ----------
+    distances
+        (N, T) pose distances of the word's N frames; N at least 4.
+    offsets
+        M, length of a target word.
+    starts
+        (C,) columns in which the target words start, at most T - M.
+    out, ends
+        (C,) and (2, C), overwritten: as in `dtw_word`.
+    """
+    rows = distances.shape[0]
+    work = np.full((3, 4, offsets, _CHUNK), _FAR, np.float32)
+    block = np.zeros((rows, offsets * _CHUNK), np.float32)
+    best, mean = np.empty(_CHUNK, np.float32), np.empty(_CHUNK, np.float32)
+    end = np.empty((2, _CHUNK), np.int16)
+    for first in range(0, starts.shape[0], _CHUNK):
+        width = min(_CHUNK, starts.shape[0] - first)
+        for i in range(rows):
+            for t in range(width):
+                start = starts[first + t]
+                for j in range(offsets):
+                    block[i, j * _CHUNK + t] = distances[i, start + j]
+        best[:] = _FAR
+        _dtw_chunk(block, (0, _CHUNK), width, work, best, mean, end)
+        out[first : first + width] = mean[:width]
+        ends[:, first : first + width] = end[:, :width]
 
 
 @nb.njit(nogil=True, cache=True)
@@ -248,3 +292,25 @@ def smallest_minima(distances: F32, breaks: I64, keep: int, barred: I64, found: 
         found[at] = t
         count = min(count + 1, keep)
     return count
+
+
+@nb.njit(nogil=True, cache=True)
+def gather(poses: F32, runs: I64, planes: F32) -> None:
+    """Lay spans of poses end to end, time last.
+
+    Parameters
+    ----------
+    poses
+        (T, m, 4).
+    runs
+        (R, 2) half-open spans of frames.
+    planes
+        (m, 4, G), overwritten; G frames in all spans together.
+    """
+    at = 0
+    for r in range(runs.shape[0]):
+        for t in range(runs[r, 0], runs[r, 1]):
+            for k in range(poses.shape[1]):
+                for c in range(4):
+                    planes[k, c, at] = poses[t, k, c]
+            at += 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -59,6 +60,12 @@ class MotionTexture:
     def planes(self) -> F32:
         """(m, 4, T) contiguous copy of the quaternions, time last: what the kernels search."""
         return np.ascontiguousarray(self.quaternions.transpose(1, 2, 0))
+
+    @cached_property
+    def digest(self) -> bytes:
+        """SHA-256 of the joints' names and rotations."""
+        names = "\n".join(self.joints).encode()
+        return hashlib.sha256(names + b"\0" + self.quaternions.tobytes()).digest()
 
     def frame(self, position: float) -> float:
         """Frame of the take, fractional, at a texture position."""

@@ -88,6 +88,16 @@ class WordNeighbours:
     spans: NDArray[np.int16]
     distances: F32
 
+    @staticmethod
+    def none(words: I64, keep: int) -> WordNeighbours:
+        """As if none were found, to be filled."""
+        return WordNeighbours(
+            words,
+            np.full((len(words), keep), -1, dtype=np.int64),
+            np.zeros((len(words), keep, 2), dtype=np.int16),
+            np.full((len(words), keep), np.inf, dtype=np.float32),
+        )
+
 
 def word_starts(frames: int, shape: WordShape) -> I64:
     """First frames of the source words: every hop, and one more that reaches the last frame."""
@@ -133,10 +143,8 @@ def find_neighbours(
     """
     words = word_starts(len(source), shape) if words is None else words
     count = max(corpus.frames - shape.target + 1, 0)
-    found = np.full((len(words), keep), -1, dtype=np.int64)
-    spans = np.zeros((len(words), keep, 2), dtype=np.int16)
-    distances = np.full((len(words), keep), np.inf, dtype=np.float32)
-    result = WordNeighbours(words, found, spans, distances)
+    result = WordNeighbours.none(words, keep)
+    found, spans, distances = result.found, result.spans, result.distances
     if count == 0 or len(words) == 0:
         return result
     quaternions, planes = source.quaternions, corpus.planes
@@ -156,8 +164,8 @@ def find_neighbours(
             at = int(words[w])
             kernels.dtw_word(poses[at - low : at - low + shape.source], shape.target, row, ends)
             row[straddling] = _FAR
-            barred = _barred(at, shape) if own else np.zeros(2, dtype=np.int64)
-            n = kernels.smallest_minima(row, corpus.starts, keep, barred, found[w])
+            near = barred(at, shape) if own else np.zeros(2, dtype=np.int64)
+            n = kernels.smallest_minima(row, corpus.starts, keep, near, found[w])
             distances[w, :n] = row[found[w, :n]]
             spans[w, :n] = ends[:, found[w, :n]].T
 
@@ -200,7 +208,7 @@ def _straddling(corpus: Corpus, count: int, shape: WordShape) -> NDArray[np.bool
     return bad
 
 
-def _barred(word: int, shape: WordShape) -> I64:
+def barred(word: int, shape: WordShape) -> I64:
     """Target words whose centre is nearer than N/2 frames to the source word's centre."""
     centre = word + shape.source // 2 - shape.target // 2
     return np.array([centre - shape.source // 2, centre + shape.source // 2 + 1], dtype=np.int64)
