@@ -55,4 +55,7 @@ def checked(state: DocumentState, ui: UiState) -> dict[str, bool]:
         "trails": ui.trails,
         "theme": ui.theme == "light",
         "learning": ui.learning,
+        "distances": ui.distances,
+        "beside-texture": ui.beside == "texture",
+        "beside-map": ui.beside == "map",
     }

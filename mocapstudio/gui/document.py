@@ -36,6 +36,11 @@ class UiState:
         Whether the first map is refined by what is learnt from the context.
     analysing
         Whether the take under review is being analysed.
+    distances
+        Whether distance over time is shown in the place of the curves.
+    beside
+        What is shown under the digression map: ``"texture"``, ``"map"`` (that of another
+        context) or nothing, ``""``.
     theme
         Name of the theme, ``"dark"`` or ``"light"``.
     """
@@ -49,6 +54,8 @@ class UiState:
     trails: bool = True
     learning: bool = True
     analysing: bool = False
+    distances: bool = False
+    beside: str = ""
     theme: str = "dark"
 
 

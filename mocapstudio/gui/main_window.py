@@ -22,6 +22,7 @@ from mocapstudio.gui.messages import Messages
 from mocapstudio.gui.playback import Playback
 from mocapstudio.gui.reading import AS_THEY_ARE, Manner
 from mocapstudio.gui.reasons import Reasons
+from mocapstudio.gui.second_map import SecondMap
 from mocapstudio.gui.status_bar import DeskStatusBar
 from mocapstudio.gui.switching import Switching
 from mocapstudio.gui.trouble import Trouble
@@ -50,7 +51,8 @@ class MainWindow(QMainWindow):
         self.actions_ = Actions(self)
         self.reasons = Reasons(self.bridge, self.jobs, self)
         self.playback = Playback(self.bridge, self)
-        self.workspace = ReviewWorkspace(self.bridge, self.reasons, self.actions_)
+        second = SecondMap(self.bridge, self.jobs, self)
+        self.workspace = ReviewWorkspace(self.bridge, self.reasons, second, self.actions_)
         self.analysing = Analysing(self.bridge, self.jobs, self.messages, self)
         self.deciding = Deciding(self.bridge, self.workspace.queue, self.jobs, self.messages, self)
         self.journalling = Journalling(self.bridge, self.messages, self)

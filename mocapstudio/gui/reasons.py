@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
@@ -13,20 +13,22 @@ from mocapstudio.gui.document import DocumentBridge, UiState
 from mocapstudio.gui.jobs import Jobs
 from mocapstudio.gui.trouble import Trouble, understand
 from mocapstudio.motion.facing import ROOT_ROWS
-from mocapstudio.motion.progress import Progress
+from mocapstudio.motion.progress import Progress, scaled
 from mocapstudio.review.state import DocumentState
 
 if TYPE_CHECKING:
     from mocapstudio.cleaning.analysis import Analysis
+    from mocapstudio.cleaning.distance_profile import DistanceProfile
 
 _KEY = "reasons"
 
 
 @dataclass(frozen=True, eq=False)
 class Reason:
-    """Neighbours of a flag, nearest first, or what went wrong in looking for them."""
+    """Neighbours of a flag, nearest first, and the profile they are minima of; or what is wrong."""
 
     neighbours: tuple[Neighbour, ...] | None = None
+    profile: DistanceProfile | None = None
     trouble: Trouble | None = None
 
 
@@ -105,22 +107,20 @@ class Reasons(QObject):
             key=_KEY,
         )
 
-    def _found(
-        self, asked: tuple[object, ...], found: tuple[tuple[Neighbour, ...], Proposal]
-    ) -> None:
+    def _found(self, asked: tuple[object, ...], found: tuple[Reason, Proposal]) -> None:
         if asked != self._asked:
             return
         flag, _, choice = asked
-        neighbours, proposal = found
-        self._set(Reason(neighbours))
+        reason, proposal = found
+        self._set(reason)
         assert isinstance(flag, Flag)
         assert choice is None or isinstance(choice, int)
         self._bridge.document.set_proposal(flag.id, choice, proposal)
 
     def _failed(self, asked: tuple[object, ...], error: BaseException) -> None:
         if asked == self._asked:
-            known = self._current.neighbours
-            self._set(Reason(known, understand(error, "No proposal could be made")))
+            trouble = understand(error, "No proposal could be made")
+            self._set(replace(self._current, trouble=trouble))
 
     def _set(self, reason: Reason) -> None:
         self._current = reason
@@ -129,10 +129,11 @@ class Reasons(QObject):
 
 def _work(
     analysis: Analysis, flag: Flag, choice: int | None
-) -> Generator[Progress, None, tuple[tuple[Neighbour, ...], Proposal]]:
-    from mocapstudio.cleaning import proposals, reasons
+) -> Generator[Progress, None, tuple[Reason, Proposal]]:
+    from mocapstudio.cleaning import distance_profile, proposals, reasons
 
     yield Progress(0.0, "looking for neighbours")
+    profile = yield from scaled(distance_profile.measuring(analysis, flag), 0.0, 0.6)
     neighbours = reasons.neighbours(analysis, flag)
     yield Progress(0.6, "making the proposal")
-    return neighbours, proposals.propose(analysis, flag, choice)
+    return Reason(neighbours, profile), proposals.propose(analysis, flag, choice)

@@ -110,12 +110,19 @@ def _wire_view(window: MainWindow) -> None:
     on("frame-joint", workspace.frame_joint)
     on("zoom-flag", workspace.zoom_to_flag)
     on("whole-take", workspace.show_whole_take)
+    on("distances", lambda: bridge.set_ui(distances=not bridge.ui.distances))
+    for name in ("texture", "map"):
+        on(f"beside-{name}", partial(_toggle_beside, window, name))
     on("reset-layout", workspace.reset_layout)
     on("theme", lambda: bridge.set_ui(theme="dark" if bridge.ui.theme == "light" else "light"))
     on("full-screen", lambda: window.setWindowState(
         window.windowState() ^ Qt.WindowState.WindowFullScreen))  # fmt: skip
     on("shortcuts", lambda: ShortcutsDialog(window).open())
     on("about", lambda: _about(window))
+
+
+def _toggle_beside(window: MainWindow, what: str) -> None:
+    window.bridge.set_ui(beside="" if window.bridge.ui.beside == what else what)
 
 
 def _wire_recent(window: MainWindow) -> None:

@@ -11,19 +11,27 @@ from PySide6.QtWidgets import QFrame, QSplitter, QVBoxLayout, QWidget
 
 from mocapstudio.gui import settings
 from mocapstudio.gui.actions import Actions
-from mocapstudio.gui.document import DocumentBridge
+from mocapstudio.gui.document import DocumentBridge, UiState
 from mocapstudio.gui.plots.time_range import TimeRange
 from mocapstudio.gui.reasons import Reasons
+from mocapstudio.gui.second_map import SecondMap
 from mocapstudio.gui.views.inspector import InspectorView
 from mocapstudio.gui.views.queue import QueueView
 from mocapstudio.gui.views.transport import TransportView
-from mocapstudio.gui.widgets.parts import label, panel
+from mocapstudio.gui.widgets.page_tabs import Page, PageTabs
+from mocapstudio.gui.widgets.place import Place
+from mocapstudio.gui.widgets.rooms import Rooms
 from mocapstudio.gui.workspaces.workspace import Workspace
 
 if TYPE_CHECKING:
     from mocapstudio.gui.views.curves import CurvesView
     from mocapstudio.gui.views.digression_map import DigressionMapView
+    from mocapstudio.gui.views.distances import DistancesView
     from mocapstudio.gui.views.viewport import Viewport
+    from mocapstudio.gui.workspaces.map_place import MapPlace
+
+# Shares of the height that a part needs while it shows two plots instead of one.
+_TWO_MAPS, _TWO_CURVES = 0.41, 0.29
 
 
 class ReviewWorkspace(Workspace):
@@ -38,6 +46,8 @@ class ReviewWorkspace(Workspace):
         The document's door.
     reasons
         Neighbours of the selected flag.
+    second
+        The map of another context.
     actions
         The commands behind the buttons.
     """
@@ -45,19 +55,24 @@ class ReviewWorkspace(Workspace):
     filled = Signal()
     """Emitted once viewport, map and curves are there."""
 
-    def __init__(self, bridge: DocumentBridge, reasons: Reasons, actions: Actions) -> None:
+    def __init__(
+        self, bridge: DocumentBridge, reasons: Reasons, second: SecondMap, actions: Actions
+    ) -> None:
         super().__init__()
         self.setObjectName("review")
-        self._bridge = bridge
+        self._bridge, self._reasons, self._second = bridge, reasons, second
         self.queue = QueueView(bridge)
         self.inspector = InspectorView(bridge, reasons, actions)
         self.transport = TransportView(bridge, actions)
         self.viewport: Viewport | None = None
+        self.maps: MapPlace | None = None
         self.map: DigressionMapView | None = None
         self.curves: CurvesView | None = None
-        self._stage, self._map_place, self._curves_place = _place(), _place(), _place()
+        self.distances: DistancesView | None = None
+        self._stage, self._map_place, self._curves_place = Place(), Place(), Place()
         self._columns = QSplitter(Qt.Orientation.Horizontal)
         self._rows = QSplitter(Qt.Orientation.Vertical)
+        self._rooms = Rooms(self._rows)
         self._shared_out = False
         self._lay_out()
         self._parts = {
@@ -164,43 +179,52 @@ class ReviewWorkspace(Workspace):
             self.filled.emit()
 
     def _fill_map(self) -> None:
-        from mocapstudio.gui.views.digression_map import DigressionMapView
+        from mocapstudio.gui.workspaces.map_place import MapPlace
 
         self.time_range = TimeRange(self)
-        self.map = DigressionMapView(self._bridge, self.time_range)
-        self.map.setObjectName("digression-map")
-        _put(self._map_place, self.map)
+        self.maps = MapPlace(self._bridge, self._second, self._actions, self.time_range)
+        self.map = self.maps.map
+        self._map_place.put(self.maps)
 
     def _fill_curves(self) -> None:
+        keys = self._actions["distances"].shortcut().toString()
+        pages = (
+            Page("Curves", "The selected joint before and after", self._make_curves),
+            Page(
+                "Distances",
+                f"How far the flagged span is from every other place, in degrees ({keys})",
+                self._make_distances,
+            ),
+        )
+        tabs = PageTabs("curves-tabs", pages)
+        tabs.show_page(0)
+        self._curves_place.put(tabs)
+        tabs.chosen.connect(lambda page: self._bridge.set_ui(distances=page == 1))
+
+        def follow(_old: UiState, new: UiState) -> None:
+            tabs.show_page(int(new.distances))
+            self._rooms.hold({1: _TWO_MAPS if new.beside else 0.0,
+                              2: _TWO_CURVES if new.distances else 0.0})  # fmt: skip
+
+        self._bridge.ui_changed.connect(follow)
+
+    def _make_curves(self) -> QWidget:
         from mocapstudio.gui.views.curves import CurvesView
 
         self.curves = CurvesView(self._bridge, self.time_range)
         self.curves.setObjectName("curves")
-        _put(self._curves_place, self.curves)
+        return self.curves
+
+    def _make_distances(self) -> QWidget:
+        from mocapstudio.gui.views.distances import DistancesView
+
+        self.distances = DistancesView(self._bridge, self._reasons, self.time_range)
+        self.distances.setObjectName("distances")
+        return self.distances
 
     def _fill_viewport(self) -> None:
         from mocapstudio.gui.views.viewport import Viewport
 
         self.viewport = Viewport(self._bridge)
         self.viewport.setObjectName("viewport")
-        _put(self._stage, self.viewport)
-
-
-def _place() -> QFrame:
-    place = panel("", "panel")
-    column = QVBoxLayout(place)
-    column.setContentsMargins(0, 0, 0, 0)
-    waiting = label("Loading…", "faint", "loading")
-    waiting.setAlignment(Qt.AlignmentFlag.AlignCenter)
-    column.addWidget(waiting)
-    return place
-
-
-def _put(place: QFrame, view: QWidget) -> None:
-    waiting = place.findChild(QWidget, "loading")
-    layout = place.layout()
-    assert layout is not None
-    if waiting is not None:
-        layout.removeWidget(waiting)
-        waiting.deleteLater()
-    layout.addWidget(view)
+        self._stage.put(self.viewport)
