@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import subprocess
+import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import COMMAND, Run
 
 from mocapstudio import formats
 from mocapstudio.cli.app import run
@@ -62,24 +64,28 @@ def as_frames(take: Take) -> list[dict]:
     ]
 
 
-def piped(words: list[object], text: str, caches: dict[str, str]) -> subprocess.CompletedProcess:
-    return subprocess.run(
-        [str(COMMAND), *map(str, words)],
-        input=text,
-        env={**os.environ, **caches},
-        capture_output=True,
-        text=True,
-        timeout=300,
-    )
+Align = Callable[..., tuple[int, str, str]]
+
+
+@pytest.fixture
+def align(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Align:
+    """Run the command in this process; return exit code, standard output and standard error."""
+
+    def run_it(*words: object, sent: str = "") -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "stdin", io.StringIO(sent))
+        code = run(["align", *map(str, words)])
+        return (code, *capfd.readouterr())
+
+    return run_it
 
 
 def test_a_take_is_followed_line_by_line(
-    mocapstudio: Run, reference: Path, warped: tuple[Path, np.ndarray], tmp_path: Path
+    align: Align, reference: Path, warped: tuple[Path, np.ndarray], tmp_path: Path
 ) -> None:
     stream, truth = warped
-    done = mocapstudio("align", reference, stream, "--labels", labels(tmp_path / "labels.json"))
-    assert done.returncode == 0, done.stderr
-    found = lines(done.stdout)
+    code, out, err = align(reference, stream, "--labels", labels(tmp_path / "labels.json"))
+    assert code == 0, err
+    found = lines(out)
     assert [line["frame"] for line in found] == list(range(len(truth)))
     frames = np.array([line["reference_frame"] for line in found])
     assert np.median(np.abs(frames - truth)) <= 1
@@ -93,32 +99,30 @@ def test_a_take_is_followed_line_by_line(
 
 
 def test_standard_input_gives_what_the_take_gives(
-    mocapstudio: Run, caches: dict[str, str], reference: Path, warped: tuple[Path, np.ndarray]
+    align: Align, reference: Path, warped: tuple[Path, np.ndarray]
 ) -> None:
     stream, _ = warped
-    wanted = lines(mocapstudio("align", reference, stream).stdout)
-    done = piped(["align", reference, "-"], "\n".join(as_lines(stream)) + "\n", caches)
-    assert done.returncode == 0, done.stderr
-    found = lines(done.stdout)
+    wanted = lines(align(reference, stream)[1])
+    code, out, err = align(reference, "-", sent="\n".join(as_lines(stream)) + "\n")
+    assert code == 0, err
+    found = lines(out)
     assert [line["reference_frame"] for line in found] == [one["reference_frame"] for one in wanted]
     np.testing.assert_allclose(
         [line["cost"] for line in found], [one["cost"] for one in wanted], atol=1e-5
     )
 
 
-def test_missing_repeated_and_broken_lines_are_told(
-    caches: dict[str, str], reference: Path
-) -> None:
+def test_missing_repeated_and_broken_lines_are_told(align: Align, reference: Path) -> None:
     sent = as_lines(reference)
     text = [*sent[:30], sent[29], *sent[30:50], "{broken", *sent[56:]]
     empty = json.dumps({"time": 50 / 30, "joints": {}, "root": [0, 0, 0]})
     text.insert(52, empty)
-    done = piped(["align", reference, "-"], "\n".join(text), caches)
-    assert done.returncode == 2
-    assert done.stderr.splitlines() == [
+    code, out, err = align(reference, "-", sent="\n".join(text))
+    assert code == 2
+    assert err.splitlines() == [
         "error: standard input: 52: is not JSON: Expecting property name enclosed in double quotes"
     ]
-    found = lines(done.stdout)
+    found = lines(out)
     assert len(found) == len(text) - 1
     notes = {line["frame"]: line["note"] for line in found if "note" in line}
     assert notes == {30: "repeated", 51: "unseen", 52: "bridged"}
@@ -131,7 +135,7 @@ def test_each_line_is_answered_before_the_next_is_sent(
 ) -> None:
     sent = as_lines(reference)[:5]
     process = subprocess.Popen(
-        [str(COMMAND), "align", str(reference), "-"],
+        [sys.executable, "-m", "mocapstudio", "align", str(reference), "-"],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,
@@ -147,9 +151,7 @@ def test_each_line_is_answered_before_the_next_is_sent(
     assert process.wait(60) == 0
 
 
-def test_bad_input_is_one_line(
-    reference: Path, tmp_path: Path, figure: type, capfd: pytest.CaptureFixture[str]
-) -> None:
+def test_bad_input_is_one_line(align: Align, reference: Path, tmp_path: Path, figure: type) -> None:
     other = figure(2.0, prefix="x_").write(tmp_path / "other.bvh")
     (tmp_path / "w.json").write_text('{"weights": {"tail": 1}}')
     cases = [
@@ -159,28 +161,26 @@ def test_bad_input_is_one_line(
         ([reference, reference, "--labels", labels(tmp_path / "l.json", "x")], "l.json"),
     ]
     for words, cause in cases:
-        assert run(["align", *map(str, words)]) == 2
-        out, err = capfd.readouterr()
-        assert out == ""
+        code, out, err = align(*words)
+        assert (code, out) == (2, "")
         assert len(err.splitlines()) == 1
         assert err.startswith("error: ")
         assert cause in err
 
 
-def test_a_stream_of_another_skeleton_is_refused(caches: dict[str, str], reference: Path) -> None:
+def test_a_stream_of_another_skeleton_is_refused(align: Align, reference: Path) -> None:
     stranger = json.dumps({"time": 0, "joints": {"tail": [0, 0, 0, 1]}})
-    done = piped(["align", reference, "-"], stranger, caches)
-    assert done.returncode == 2
-    assert "standard input: 1: another skeleton" in done.stderr
+    code, _, err = align(reference, "-", sent=stranger)
+    assert code == 2
+    assert "standard input: 1: another skeleton" in err
 
 
-def test_what_is_waited_for_is_found(caches: dict[str, str], reference: Path) -> None:
+def test_what_is_waited_for_is_found(align: Align, reference: Path) -> None:
     frames = as_frames(formats.read(reference)[0][0])
     still = [dict(frames[0], time=i / 30) for i in range(60)]
     moving = [dict(frame, time=2 + frame["time"]) for frame in frames]
     text = "\n".join(json.dumps(frame) for frame in [*still, *moving])
-    done = piped(["align", reference, "-", "--wait"], text, caches)
-    found = lines(done.stdout)
+    found = lines(align(reference, "-", "--wait", sent=text)[1])
     assert all(line["reference_frame"] is None for line in found[:55])
     begun = next(line["frame"] for line in found if line["reference_frame"] is not None)
     # It takes some frames to tell a beginning from a twitch.
