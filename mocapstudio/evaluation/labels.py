@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from mocapstudio import formats
 from mocapstudio.cleaning.model import Kind
 from mocapstudio.evaluation.cases import CONTEXT_TAKES, Case, ContextSize
 from mocapstudio.evaluation.corpora import OWN, Entry, entries, read_some, read_take
@@ -86,10 +87,25 @@ def labelled_cases(
     for stem, truths in sorted(labels.items()):
         take = by_stem[stem].read()
         rows = analysed_rows(take.skeleton)
+        truths = _moved(truths, _dropped(by_stem[stem].path, take))
         mask = labelled(take.frames, rows, truths)
         around = _others(everything, {by_stem[stem].digest}, take, context)
         made.append(Case(take, take, tuple(truths), around, given=mask))
     return made
+
+
+def _dropped(path: Path, take: Take) -> int:
+    """How many frames of the file, such as a T-pose, were left out before the take."""
+    return int(formats.read(path)[0][0].frames - take.frames)
+
+
+def _moved(truths: Sequence[Truth], dropped: int) -> list[Truth]:
+    """Labels in the file's own frames, counted from the take's first."""
+    kept = [truth for truth in truths if truth.end > dropped]
+    return [
+        replace(truth, start=max(truth.start - dropped, 0), end=truth.end - dropped)
+        for truth in kept
+    ]
 
 
 def cleaned_case(data: Sequence[Path], cleaned: Path, context: ContextSize = "large") -> Case:
