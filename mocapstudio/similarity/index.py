@@ -25,7 +25,7 @@ STRIDE = 3
 PACES = (1.0, 0.35, 0.5, 0.7, 1.4, 2.0)
 """A warping path may hold one word up: the source is looked up as if it were slower or faster."""
 
-_COUNTS = (2048, 768, 768, 768, 768, 768)
+_COUNTS = (1536, 2048, 1024, 768, 768, 1024)
 _SLACK = 0.3
 
 _SAMPLES = 3
@@ -99,7 +99,7 @@ def _rows(poses: F32, starts: I64, offsets: I64, reference: F32) -> F32:
     chosen = poses[np.minimum(starts[:, None] + offsets, len(poses) - 1)]
     side = np.einsum("tsmc,mc->tsm", chosen, reference)
     chosen *= np.where(side < 0, np.float32(-1), np.float32(1))[..., None]
-    return chosen.reshape(len(starts), -1)
+    return np.asarray(chosen.reshape(len(starts), -1))
 
 
 @dataclass(frozen=True, eq=False)
