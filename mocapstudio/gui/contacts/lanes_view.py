@@ -10,7 +10,7 @@ from mocapstudio.cleaning.contacts.model import Contact, Fixed
 from mocapstudio.gui import theme as themes
 from mocapstudio.gui import wording
 from mocapstudio.gui.contacts.bridge import ContactsBridge, ContactsUi
-from mocapstudio.gui.contacts.lane_drawing import kind_words, row_height
+from mocapstudio.gui.contacts.lane_drawing import ROW, kind_words, row_height
 from mocapstudio.gui.contacts.lane_gestures import Part
 from mocapstudio.gui.contacts.lane_plot import LanePlot
 from mocapstudio.gui.contacts.lanes import Key, Lane, key_of, lanes_of
@@ -23,6 +23,7 @@ from mocapstudio.gui.widgets.parts import Hint
 from mocapstudio.review.state import DocumentState
 
 _DWELL = 350
+_ROOM = 4
 _NONE = (
     "Nothing is in contact yet.  F5 detects what feet and hands touch;  or drag along a lane to "
     "draw a contact."
@@ -70,6 +71,7 @@ class LanesView(QWidget):
             row.addWidget(part, 1 if part is self.plot else 0)
         self.hint = Hint(self.plot, "contacts-hint")
         self.setMinimumHeight(96)
+        self._slides: dict[Key, str] = {}
         self._pointer: QPointF | None = None
         self._dwell = QTimer(self)
         self._dwell.setSingleShot(True)
@@ -140,7 +142,12 @@ class LanesView(QWidget):
         self.plot.set_frame(state.frame)
         keys = {key_of(one) for one in bridge.contacts if one.id in chosen}
         self.names.show_words({lane.key: lane.name for lane in lanes}, keys)
-        slides = {} if reading is None else lane_slides(reading, bridge.contacts)
+        if lanes:
+            self.setMaximumHeight(TIME_AXIS_HEIGHT + round(ROW * len(lanes)) + _ROOM)
+        # Measured again once it is let go: the curves show the lane that is dragged.
+        if bridge.ui.held is None:
+            self._slides = {} if reading is None else lane_slides(reading, bridge.contacts)
+        slides = self._slides
         self.figures.show_words({lane.key: slides.get(lane.key, "") for lane in lanes}, keys)
         words = ""
         if take is not None and reading is not None:

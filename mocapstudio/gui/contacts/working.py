@@ -80,8 +80,14 @@ class Working(QObject):
         contacts = tuple(one for one in self._bridge.kept if not reading.trouble(one))
         left_out = len(self._bridge.kept) - len(contacts)
 
+        kept = self._bridge.kept
+
         def solved(result: SkateResult) -> None:
             if desk.document is not document or not _is_open(desk.state.scene, performer):
+                return
+            base = document.uncorrected(performer)
+            if document.contacts(performer) != kept or not _same_motion(base, reading.before):
+                self._messages.tell("Contacts or edits changed meanwhile: solve again.")
                 return
             try:
                 document.set_corrections(performer, as_proposals(result.take, result.declared))
@@ -120,6 +126,10 @@ def _detecting(
     partners: Mapping[str, Take] = reading.others
     points: tuple[ContactPoint, ...] = reading.points
     return (yield from detecting(reading.before, partners, points, keep))
+
+
+def _same_motion(one: Take, other: Take) -> bool:
+    return one.rotations is other.rotations and one.translations is other.translations
 
 
 def _is_open(scene: Scene, performer: str) -> bool:
