@@ -25,7 +25,7 @@ STRIDE = 3
 PACES = (1.0, 0.35, 0.5, 0.7, 1.4, 2.0)
 """A warping path may hold one word up: the source is looked up as if it were slower or faster."""
 
-_COUNTS = (1536, 2048, 1024, 768, 768, 1024)
+_COUNTS = (2048, 2560, 1280, 1280, 1280, 1536)
 _SLACK = 0.3
 
 _SAMPLES = 3

@@ -25,7 +25,7 @@ F32 = NDArray[np.float32]
 I64 = NDArray[np.int64]
 
 WORTH_INDEXING = 100_000
-"""Frames at 24 fps from which on the index pays, even for a single search: for 95 words 5.0 s of
+"""Frames at 24 fps from which on the index pays, even for a single search: for 95 words 5.9 s of
 processor time, of which 2.0 s are the index, instead of 7.3 s for the exact search."""
 
 _REACH = STRIDE
