@@ -23,7 +23,7 @@ from mocapstudio.gui.widgets.parts import Hint
 from mocapstudio.review.state import DocumentState
 
 _DWELL = 350
-_ROOM = 4
+_ROOM, _FEWEST = 4, 4
 _NONE = (
     "Nothing is in contact yet.  F5 detects what feet and hands touch;  or drag along a lane to "
     "draw a contact."
@@ -98,6 +98,11 @@ class LanesView(QWidget):
         """The lanes that are shown."""
         return self.plot.lanes
 
+    @property
+    def full_height(self) -> int:
+        """Pixels in which all lanes are as high as they can be."""
+        return TIME_AXIS_HEIGHT + round(ROW * max(len(self.lanes), _FEWEST)) + _ROOM
+
     def zoom_to_chosen(self) -> None:
         """Zoom to the chosen contact."""
         chosen = self._bridge.chosen
@@ -142,8 +147,6 @@ class LanesView(QWidget):
         self.plot.set_frame(state.frame)
         keys = {key_of(one) for one in bridge.contacts if one.id in chosen}
         self.names.show_words({lane.key: lane.name for lane in lanes}, keys)
-        if lanes:
-            self.setMaximumHeight(TIME_AXIS_HEIGHT + round(ROW * len(lanes)) + _ROOM)
         # Measured again once it is let go: the curves show the lane that is dragged.
         if bridge.ui.held is None:
             self._slides = {} if reading is None else lane_slides(reading, bridge.contacts)

@@ -53,7 +53,8 @@ class ContactsWorkspace(Workspace):
         self.curves = CurvesView(self.bridge, self.readings, self.time_range)
         self._columns = QSplitter(Qt.Orientation.Horizontal)
         self._rows = QSplitter(Qt.Orientation.Vertical)
-        self._shared_out = False
+        self._shared_out = self._restored = False
+        self._lanes = 0
         self._lay_out()
         self.lanes.draw_wanted.connect(self.working.draw)
         filing = Filing(window, self.bridge, self.readings, window.messages)
@@ -61,7 +62,7 @@ class ContactsWorkspace(Workspace):
         window.bridge.changed.connect(self._follow)
         self.bridge.ui_changed.connect(self._follow_ui)
         self._answers = self.answering.answers()
-        self.readings.changed.connect(lambda: self._tell(anyway=True))
+        self.readings.changed.connect(self._follow_readings)
 
     def answers(self) -> Answers:
         """Answer the commands about contacts."""
@@ -89,7 +90,7 @@ class ContactsWorkspace(Workspace):
         width, height = self.width(), self.height()
         right = min(max(round(0.21 * width), 270), 340)
         self._columns.setSizes([width - right, right])
-        lanes = min(max(round(0.24 * height), 150), 220)
+        lanes = min(self.lanes.full_height, round(0.3 * height))
         curves = min(max(round(0.19 * height), 120), 190)
         self._rows.setSizes([height - lanes - curves, lanes, curves])
 
@@ -108,7 +109,7 @@ class ContactsWorkspace(Workspace):
         for splitter, name in ((self._columns, "columns"), (self._rows, "rows")):
             state = settings.layout(f"contacts-{name}")
             if state is not None:
-                splitter.restoreState(state)
+                self._restored |= splitter.restoreState(state)
 
     def changeEvent(self, event: QEvent) -> None:
         """Follow the theme."""
@@ -142,6 +143,13 @@ class ContactsWorkspace(Workspace):
 
     def _follow(self, old: DocumentState, new: DocumentState) -> None:
         self._tell(anyway=not only_frame_differs(old, new))
+
+    def _follow_readings(self) -> None:
+        self._tell(anyway=True)
+        # How many lanes there are is known only now.
+        if self._lanes != len(self.lanes.lanes) and not self._restored and self._shared_out:
+            self.share_out()
+        self._lanes = len(self.lanes.lanes)
 
     def _follow_ui(self, _old: ContactsUi, _new: ContactsUi) -> None:
         self._tell(anyway=True)
