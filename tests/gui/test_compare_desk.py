@@ -399,3 +399,5 @@ def test_nothing_is_cut_off(hands, compare, size):
     compare.desk.share_out()
     assert (hands.window.width(), hands.window.height()) == size
     hands.see(lambda: cut_texts(hands.window) == [])
+    pictures = compare.desk.pictures
+    hands.see(lambda: pictures.geometry() == pictures.parentWidget().rect())

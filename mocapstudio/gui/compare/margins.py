@@ -74,8 +74,9 @@ class TimingLegend(QWidget):
         p.fillRect(self.rect(), QColor(look.panel))
         p.setFont(small_font(10))
         p.setRenderHint(QPainter.RenderHint.Antialiasing)
+        line_height = min(17.0, self.height() / 3.6)
         for line, kind in enumerate((1, 0, -1)):
-            middle = 28.0 + 17 * line
+            middle = min(28.0, 0.7 * line_height) + line_height * line
             p.setPen(Qt.PenStyle.NoPen)
             p.setBrush(kinds.timing(look, kind))
             p.drawEllipse(QRectF(8, middle - 3.5, 7, 7))

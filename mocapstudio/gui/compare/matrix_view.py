@@ -18,7 +18,6 @@ from PySide6.QtGui import (
     QShowEvent,
     QWheelEvent,
 )
-from PySide6.QtWidgets import QWidget
 
 from mocapstudio.gui import theme as themes
 from mocapstudio.gui.compare.bridge import CompareBridge
@@ -27,6 +26,7 @@ from mocapstudio.gui.compare.layout import Stretch
 from mocapstudio.gui.plots import colours
 from mocapstudio.gui.plots.axes import small_font
 from mocapstudio.gui.plots.ticks import time_ticks
+from mocapstudio.gui.widgets.native import NativeView
 from mocapstudio.review.comparing import ComparingState
 from mocapstudio.review.comparing_matrix import PooledDistances, pooled_distances
 
@@ -35,7 +35,7 @@ _NOTCH = 0.85
 _SHORTEST = 6.0
 
 
-class MatrixView(QWidget):
+class MatrixView(NativeView):
     """Distances of all poses of the reference (down up) and the source (across).
 
     A click goes to the nearest step of the path, the wheel zooms; it shows the stretch of time
@@ -49,9 +49,6 @@ class MatrixView(QWidget):
 
     def __init__(self, bridge: CompareBridge) -> None:
         super().__init__()
-        # A native window of its own spares the desk from compositing itself at every play head.
-        self.setAttribute(Qt.WidgetAttribute.WA_DontCreateNativeAncestors)
-        self.setAttribute(Qt.WidgetAttribute.WA_NativeWindow)
         self.setObjectName("compare-matrix-view")
         self.setToolTip(
             "Distance of every pose of the source (across) from every pose of the reference (up):\n"

@@ -26,6 +26,7 @@ from mocapstudio.gui.plots.layers import Layer
 from mocapstudio.gui.plots.pooling import block_length
 from mocapstudio.gui.plots.time_plot import LEFT_GUTTER, TimePlot
 from mocapstudio.gui.plots.time_range import TimeRange
+from mocapstudio.gui.widgets.native import NativeView
 from mocapstudio.review.comparing import Compared, ComparingState, Linked
 from mocapstudio.review.comparing_state import only_heads_differ
 
@@ -179,7 +180,7 @@ class _Names(QWidget):
         p.end()
 
 
-class MultiplesView(QWidget):
+class MultiplesView(NativeView):
     """The strips of all sources with their names.
 
     A click chooses the source and goes to the moment; zooming and panning as in the pictures,
@@ -193,9 +194,6 @@ class MultiplesView(QWidget):
 
     def __init__(self, bridge: CompareBridge) -> None:
         super().__init__()
-        # A native window of its own spares the desk from compositing itself at every play head.
-        self.setAttribute(Qt.WidgetAttribute.WA_DontCreateNativeAncestors)
-        self.setAttribute(Qt.WidgetAttribute.WA_NativeWindow)
         self.setObjectName("compare-multiples-view")
         self._bridge = bridge
         self.time_range = TimeRange(self)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QEvent, QPoint, QPointF, Qt, QTimer
-from PySide6.QtWidgets import QGridLayout, QInputDialog, QMenu, QToolTip, QWidget
+from PySide6.QtWidgets import QGridLayout, QInputDialog, QMenu, QToolTip
 
 from mocapstudio.comparison.model import Comparison
 from mocapstudio.gui import theme as themes
@@ -15,13 +15,14 @@ from mocapstudio.gui.compare.layout import frames_wide
 from mocapstudio.gui.compare.margins import AxesLegend, HeatMargin, ReadOutPanel, TimingLegend
 from mocapstudio.gui.plots.time_plot import TimePlot
 from mocapstudio.gui.plots.time_range import TimeRange
+from mocapstudio.gui.widgets.native import NativeView
 from mocapstudio.gui.widgets.parts import Hint, panel
 from mocapstudio.review.comparing import ComparingState
 
 _DWELL_MS = 250
 
 
-class PicturesView(QWidget):
+class PicturesView(NativeView):
     """Pose difference, misalignment and both performances as colours, over one stretch of time.
 
     A click goes to that moment, the wheel zooms about the pointer, the middle button pans, a
@@ -35,10 +36,6 @@ class PicturesView(QWidget):
 
     def __init__(self, bridge: CompareBridge) -> None:
         super().__init__()
-        # A native window of its own spares the desk from compositing itself at every play head.
-        self.setAttribute(Qt.WidgetAttribute.WA_DontCreateNativeAncestors)
-        self.setAttribute(Qt.WidgetAttribute.WA_NativeWindow)
-        self.setAttribute(Qt.WidgetAttribute.WA_StyledBackground)
         self.setObjectName("compare-pictures")
         self._bridge = bridge
         self._shown: ComparingState | None = None
