@@ -22,7 +22,7 @@ CONTACTS = (
     Command("contacts-merge", "&Merge", "Make one of the chosen contacts of one point", ("M",)),
     Command("contacts-delete", "De&lete", "Delete the chosen contacts", ("Del",), "delete"),
     SEPARATOR,
-    Command("contacts-snap", "S&nap",
+    Command("contacts-snap", "Sn&ap",
             "Let a dragged target snap to the floor and to a partner's joints", ("Shift+S",),
             "snap", checkable=True),
     Command("contacts-pose", "&Key Pose",
