@@ -113,7 +113,7 @@ def test_a_sweep_fills_free_room_from_where_it_began(contacts, a, b) -> None:
 
 
 def test_lanes_stand_left_before_right_feet_before_hands() -> None:
-    take = walking(2.0)
+    take = walking()
     lanes = lanes_of(take.skeleton, contact_points(take), ())
     assert [lane.name for lane in lanes] == [
         "Left heel", "Left ball", "Right heel", "Right ball", "Left palm", "Right palm",
