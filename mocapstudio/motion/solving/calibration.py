@@ -17,9 +17,9 @@ from mocapstudio.motion.topology import topology
 
 Array = NDArray[np.float64]
 
-_OVERALL = 0.15
-"""Share of the body's length that it may well differ from the template's."""
-_OF_ONE = 0.04
+_OVERALL = 0.04
+"""Share of the body's length that it may well differ from the first guess."""
+_OF_ONE = 0.025
 """Share that one bone may well differ from the others."""
 _SHORT = 5e-3
 """Metres below which a bone's length is not looked for."""
@@ -107,11 +107,16 @@ def _reduced(
     across = np.swapaxes(slopes, 1, 2) @ own
     solved = np.linalg.solve(matrix, np.concatenate([across, right[..., None]], axis=2))
     poses, per_unknown = solved[..., -1], solved[..., :-1]
-    whole = np.einsum("kri,krj->ij", own, own, optimize=True)
-    whole -= np.einsum("kpi,kpj->ij", across, per_unknown, optimize=True)
-    side = np.einsum("kri,kr->i", own, weighed) - np.einsum("kpi,kp->i", across, poses)
+    rows, crossing = _stacked(own), _stacked(across)
+    whole = rows.T @ rows - crossing.T @ _stacked(per_unknown)
+    side = rows.T @ weighed.ravel() - crossing.T @ poses.ravel()
     share = min(1.0, _INDEPENDENT / len(slopes))
     return share * whole, share * side, (poses, per_unknown)
+
+
+def _stacked(frames: Array) -> Array:
+    """(K, R, G) of all frames below each other: (K R, G)."""
+    return frames.reshape(-1, frames.shape[2])
 
 
 def _roots(slopes: Array, markers: int) -> Array:
@@ -146,5 +151,3 @@ def _add_priors(matrix: Array, right: Array, body: Body, expected: Array, length
     away = np.concatenate([(body.attachment.offsets - expected).ravel(), lengths])
     right -= precision * away
     matrix[np.diag_indices_from(matrix)] += precision
-
-

@@ -24,6 +24,9 @@ _FAR = 0.04
 """Metres beyond which a marker counts the less the farther it is off (Huber)."""
 _STEP = 0.6
 """Radians that a joint turns in one step at most."""
+_STUCK = 0.06
+"""Metres by which a marker is off in a frame that may be stuck."""
+_ATTEMPTS = 3
 _AT_ONCE = 128
 
 
@@ -71,7 +74,7 @@ def pull(body: Body, pose: Pose, towards: Array) -> Array:
 
 
 def standing_precision(body: Body) -> Array:
-    """(D,) inverse variances of turns from the standing pose; 0 for the hips, which face anywhere."""
+    """(D,) inverse variances of turns from the standing pose; 0 for the hips."""
     joints, _ = body.freedoms
     own = np.bincount(body.attachment.joints, minlength=len(body.scales))
     deviation = np.array(_TURNS)[np.minimum(own, 2)][joints]
@@ -138,8 +141,44 @@ def _step(body: Body, pose: Pose, seen: Seen, around: Array | None) -> Pose:
     if around is not None:
         beside = np.full(matrix.shape[1] - 3, _BESIDE**-2.0)
         _add_prior(matrix, right, beside, pull(body, pose, around))
-    steps = np.linalg.solve(matrix, right[..., None])[..., 0]
+    steps: Array = np.asarray(np.linalg.solve(matrix, right[..., None])[..., 0], dtype=float)
     return body.moved(pose, limited(steps))
+
+
+def freed(body: Body, pose: Pose, seen: Seen, rounds: int) -> Pose:
+    """Pose frames anew that are stuck in a wrong fold, from the nearest frame in time that is not.
+
+    Parameters
+    ----------
+    body
+        The body.
+    pose, seen
+        K frames, neighbours in time.
+    rounds
+        Gauss-Newton steps of each attempt.
+    """
+    for _ in range(_ATTEMPTS):
+        worst = _worst(body, pose, seen)
+        stuck = worst > max(_STUCK, 3.0 * float(np.median(worst)))
+        if not stuck.any() or stuck.all():
+            return pose
+        rows, good = np.flatnonzero(stuck), np.flatnonzero(~stuck)
+        after = np.minimum(np.searchsorted(good, rows), len(good) - 1)
+        before = np.maximum(after - 1, 0)
+        for side in (before, after):
+            tried = refine(body, pose[good[side]], seen[rows], rounds)
+            better = _worst(body, tried, seen[rows]) < _worst(body, pose[rows], seen[rows])
+            place, turns = pose.place.copy(), pose.turns.copy()
+            place[rows[better]] = tried.place[better]
+            turns[rows[better]] = tried.turns[better]
+            pose = Pose(place, turns)
+    return pose
+
+
+def _worst(body: Body, pose: Pose, seen: Seen) -> Array:
+    """(K,) metres by which the worst marker is off that was seen."""
+    far = np.linalg.norm(residuals(body, pose, seen), axis=2)
+    return np.asarray(np.where(seen.weights > 0, far, 0.0).max(axis=1))
 
 
 def limited(steps: Array) -> Array:

@@ -11,6 +11,7 @@ from collections.abc import Generator
 
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from mocapstudio.motion import progress
 from mocapstudio.motion import rotations as rot
@@ -24,7 +25,7 @@ from mocapstudio.motion.solving.body import Body, Pose
 from mocapstudio.motion.solving.calibration import calibrate
 from mocapstudio.motion.solving.initial import first_pose
 from mocapstudio.motion.solving.model import Solved
-from mocapstudio.motion.solving.pose import Seen, refine, residuals
+from mocapstudio.motion.solving.pose import Seen, freed, refine, residuals
 from mocapstudio.motion.solving.template import Template, template_of
 from mocapstudio.motion.take import Take
 
@@ -33,6 +34,8 @@ Array = NDArray[np.float64]
 _FEWEST = 6
 _FEWEST_JOINTS = 3
 _CALIBRATED = 80
+_ALIKE = 0.06
+"""Share by which markers may be misplaced: a body as near the template's size is as large."""
 _FILLED = 0.05
 """Weight of a marker that was filled, not measured."""
 _RIGID = 0.06
@@ -86,7 +89,10 @@ def solving(markers: MarkerTake, template: Take) -> Generator[Progress, None, So
     samples = _samples(whole, attachment.markers)
     pose = first_pose(body, samples)
     for at in range(_LAST):
-        pose = refine(body, pose, samples, 1, beside=at > 0)
+        with threadpool_limits(1, "blas"):
+            pose = refine(body, pose, samples, 1, beside=at > 0)
+            if at == _LAST - 2:
+                pose = freed(body, pose, samples, _ROUNDS)
         yield Progress(0.4 + 0.6 * (at + 1) / _LAST, "posing every frame")
     return _result(markers, template, body, pose, left_out)
 
@@ -94,7 +100,9 @@ def solving(markers: MarkerTake, template: Take) -> Generator[Progress, None, So
 def _check(markers: MarkerTake, attachment: Attachment, seen: int) -> None:
     known, joints = len(attachment.markers), len(np.unique(attachment.joints))
     if seen < _FEWEST:
-        raise MocapError(f"{markers.name}: {seen} markers are too few to solve; {_FEWEST} are needed")
+        raise MocapError(
+            f"{markers.name}: {seen} markers are too few to solve; {_FEWEST} are needed"
+        )
     if known < _FEWEST or joints < _FEWEST_JOINTS:
         raise MocapError(
             f"{markers.name}: only {known} of {seen} marker names tell a part of the template's"
@@ -128,8 +136,10 @@ def _calibrated(
     size = _size(template, attachment, seen)
     attachment = attachment.scaled(size)
     body = Body(template, attachment, np.full(len(template.skeleton), size))
-    pose = refine(body, first_pose(body, seen), seen, _ROUNDS)
-    body, pose = calibrate(body, pose, seen, _CALIBRATIONS)
+    # Matrices are small: several threads on each would only wait for each other.
+    with threadpool_limits(1, "blas"):
+        pose = refine(body, first_pose(body, seen), seen, _ROUNDS)
+        body, pose = calibrate(body, pose, seen, _CALIBRATIONS)
     return body, attachment.scaled(1 / size), pose
 
 
@@ -153,7 +163,8 @@ def _size(template: Template, attachment: Attachment, seen: Seen) -> float:
         length = np.nanmedian(apart[:, pairs], axis=0)
         rigid = np.nanstd(apart[:, pairs], axis=0) < 0.03 * length
         ratios += list(length[rigid] / expected[pairs][rigid])
-    return float(np.median(ratios)) if ratios else 1.0
+    size = float(np.median(ratios)) if ratios else 1.0
+    return 1.0 if abs(size - 1.0) < _ALIKE else size
 
 
 def _result(
@@ -195,13 +206,12 @@ def _as_take(markers: MarkerTake, template: Take, body: Body, pose: Pose) -> Tak
     scaled = Skeleton(skeleton.names, skeleton.parents, offsets, skeleton.end_parents, ends)
     rotations = rot.continuous(rot.from_matrix(pose.turns))
     place = pose.place
-    translated, translations = (0,), place[:, None]
+    translated: tuple[int, ...] = (0,)
+    translations = place[:, None]
     if hips != 0:
         positions, world = body.joints(pose)
         parent = int(skeleton.parents[hips])
-        local = np.einsum(
-            "kba,kb->ka", world[:, parent], place - positions[:, parent]
-        )
+        local = np.einsum("kba,kb->ka", world[:, parent], place - positions[:, parent])
         root = np.broadcast_to(positions[:1, 0], place.shape)
         translated, translations = (0, hips), np.stack([root, local], axis=1)
     return Take(
