@@ -9,10 +9,11 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from mocapstudio.motion.marker_labels import bare, split_side
+
 LIMBS = ("spine", "head", "left arm", "right arm", "left leg", "right leg", "other")
 """Limbs in the order of display."""
 
-_SIDE = re.compile(r"^(left|right|l|r)(?=.)")
 _HEAD = re.compile(r"^(fhd|bhd|bkhd|head|hed|rfhd|forehead|nose|eye|ear)")
 _TRUNK = re.compile(
     r"^(c7|t\d+|clav|strn|stern|bac|nck|neck|chest|spine|torso|thor|sac|pelvis|hips?$|asi|psi|iliac"
@@ -47,12 +48,6 @@ _SIDED_ROLES = {
 }
 
 
-def bare(label: str) -> str:
-    """Return a label without subject, suffix and punctuation, in lower case: ``"lfhd"``."""
-    name = label.split(":")[-1].lower().removesuffix("_study")
-    return re.sub(r"[^a-z0-9#]", "", name)
-
-
 def limb_of(label: str) -> str:
     """Return the limb that a marker sits on, ``"other"`` where its label tells none."""
     name = bare(label)
@@ -69,14 +64,6 @@ def limb_of(label: str) -> str:
         return "spine"
     kind = "arm" if _ARM.match(part) else "leg" if _LEG.match(part) else ""
     return f"{side} {kind}" if kind else "other"
-
-
-def split_side(name: str) -> tuple[str, str]:
-    """Split a bare label into ``"left"``, ``"right"`` or ``""``, and the part."""
-    found = _SIDE.match(name)
-    if not found:
-        return "", name
-    return ("left" if found[1][0] == "l" else "right"), name[found.end() :]
 
 
 def marker_roles(labels: Sequence[str]) -> dict[int, str]:
