@@ -118,7 +118,7 @@ class ContextStrip(QWidget):
                 p.setPen(QColor(look.muted))
                 name = metrics.elidedText(one.take.name, Qt.TextElideMode.ElideRight, width - 8)
                 p.drawText(QPointF(left + 4, _NAMES - 4), name)
-            x = left + (np.arange(len(one.degrees)) + 0.5) * scale
+            x = np.asarray(left + (np.arange(len(one.degrees)) + 0.5) * scale, dtype=np.float64)
             height = one.degrees.astype(np.float64) / self._top * area.height()
             y = np.asarray(area.bottom() - height, dtype=np.float64)
             p.setClipRect(area)
