@@ -29,9 +29,7 @@ def solve(
     ],
     out: Annotated[
         Path | None,
-        typer.Option(
-            "-o", "--out", metavar="OUT", help="Motion to write; MARKERS.bvh by default."
-        ),
+        typer.Option("-o", "--out", metavar="OUT", help="Motion to write; MARKERS.bvh by default."),
     ] = None,
     json_path: JsonPath = None,
     *,
@@ -99,9 +97,7 @@ def as_json(result: Solved, markers: Path, output: Path) -> dict[str, Any]:
                 for label, joint, one in zip(result.labels, carriers, left.T, strict=True)
                 for measured in [bool((~np.isnan(one)).any())]
             },
-            "frames": [
-                None if np.isnan(one).all() else _number(np.nanmean(one)) for one in left
-            ],
+            "frames": [None if np.isnan(one).all() else _number(np.nanmean(one)) for one in left],
         },
         "bones": {
             name: {"length": _number(np.linalg.norm(offset)), "scale": _number(scale)}

@@ -41,9 +41,7 @@ def read_template(path: Path, reading: TakeOptions) -> Take:
 
     from mocapstudio import formats
 
-    options = replace(
-        formats.ReadOptions(), fps=reading.fps or Fraction(120), skeleton=reading.asf
-    )
+    options = replace(formats.ReadOptions(), fps=reading.fps or Fraction(120), skeleton=reading.asf)
     return formats.read(path, options)[0][0]
 
 

@@ -40,6 +40,8 @@ _FILLED = 0.05
 """Weight of a marker that was filled, not measured."""
 _RIGID = 0.06
 """Metres: a marker that moves more on every joint is on none."""
+_OFF = 0.1
+"""Metres: a frame with a marker farther off is told of."""
 _ROUNDS, _CALIBRATIONS, _LAST = 5, 12, 4
 
 
@@ -100,12 +102,10 @@ def solving(markers: MarkerTake, template: Take) -> Generator[Progress, None, So
 def _check(markers: MarkerTake, attachment: Attachment, seen: int) -> None:
     known, joints = len(attachment.markers), len(np.unique(attachment.joints))
     if seen < _FEWEST:
-        raise MocapError(
-            f"{markers.name}: {seen} markers are too few to solve; {_FEWEST} are needed"
-        )
+        raise MocapError(f"{seen} markers are too few to solve; {_FEWEST} are needed")
     if known < _FEWEST or joints < _FEWEST_JOINTS:
         raise MocapError(
-            f"{markers.name}: only {known} of {seen} marker names tell a part of the template's"
+            f"only {known} of {seen} marker names tell a part of the template's"
             " body; rename markers with --joint-map to names such as LKNE, RSHO, LASI"
         )
 
@@ -174,9 +174,11 @@ def _result(
     raw = _samples(markers, attachment.markers)
     measured = raw.weights == 1.0
     lengths = np.linalg.norm(residuals(body, pose, raw), axis=2)
-    warnings = [
-        f"{markers.labels[m]} belongs to no joint and is left out" for m in left_out
-    ] + _thin(body)
+    warnings = [f"{markers.labels[m]} belongs to no joint and is left out" for m in left_out]
+    warnings += _thin(body)
+    far = int((np.where(measured, lengths, 0.0).max(axis=1) > _OFF).sum())
+    if far:
+        warnings.append(f"in {far} of {len(lengths)} frames a marker is more than 10 cm off")
     return Solved(
         take=_as_take(markers, template, body, pose),
         labels=tuple(markers.labels[m] for m in attachment.markers),
