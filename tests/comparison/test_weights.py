@@ -173,9 +173,7 @@ def noisy_walks(count: int) -> list[LabelledTake]:
         take = replace(take, name=f"walk {i}", rotations=rotations)
         cuts = [0, *(int(np.searchsorted(truth, 12 * k)) for k in range(1, 10)), take.frames]
         parts = [
-            Segment("abc"[k % 3] + str(k), a, b)
-            for k, (a, b) in enumerate(pairwise(cuts))
-            if b > a
+            Segment("abc"[k % 3] + str(k), a, b) for k, (a, b) in enumerate(pairwise(cuts)) if b > a
         ]
         found.append(LabelledTake(take, Labels(take.name, Fraction(30), tuple(parts))))
     return found
