@@ -89,7 +89,10 @@ def hands(window, qtbot):
     workspace.bridge.sitting.clear()
     workspace.bridge.sitting.set_parameters(ComparisonParameters())
     workspace.bridge.set_ui(**asdict(CompareUi()))
-    return user
+    yield user
+    # What one test leaves open must not stand in the way of the next.
+    while (modal := QApplication.activeModalWidget()) is not None:
+        modal.close()
 
 
 @pytest.fixture
@@ -368,7 +371,8 @@ def test_a_missing_frame_rate_is_asked_for(hands, data):
     workspace = hands.window.switching.front
     workspace.working.set_reference(data / "karate_rmocap_GPL3" / "mawashi.geri.left.1.csv")
     hands.see(lambda: hands.shows("rate-dialog"))
-    hands.type("rate-text", "100")
+    hands.type("rate-text", "100", enter=False)
+    hands.click("rate-ok")
     hands.see(lambda: workspace.bridge.state.reference is not None)
     assert workspace.bridge.state.reference.rate == 100
 
