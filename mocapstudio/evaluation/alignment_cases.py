@@ -59,7 +59,7 @@ def actions(data: Sequence[Path], labels: Sequence[Path]) -> list[Action]:
         for file in wanted:
             own = labels_of(file.name, known)
             assert own is not None
-            performances += repetitions(LabelledTake(_read(file, own), own))
+            performances += repetitions(LabelledTake(read_labelled(file, own), own))
         if len(performances) >= _FEWEST:
             found.append(Action(path.stem, tuple(performances)))
     if not found:
@@ -67,7 +67,14 @@ def actions(data: Sequence[Path], labels: Sequence[Path]) -> list[Action]:
     return found
 
 
-def _read(file: Path, labels: Labels) -> formats.Recording:
+def read_labelled(file: Path, labels: Labels) -> formats.Recording:
+    """Read a take, at the rate of its labels where the file tells none.
+
+    Raises
+    ------
+    FileError
+        If it cannot be read.
+    """
     try:
         takes, _ = formats.read_any(file)
     except NoRateError:

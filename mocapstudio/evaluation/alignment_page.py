@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import html
+import math
 from collections.abc import Mapping, Sequence
 
 from mocapstudio.comparison.online_features import F64
 
 # Okabe and Ito's colours, distinct to the colour-blind; a method keeps its own in all figures.
 _COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c8c8c", "#117733")
-_WIDTH, _HEIGHT, _LEFT, _TOP, _BOTTOM, _RIGHT = 380, 330, 44, 30, 44, 14
+_WIDTH, _HEIGHT, _LEFT, _TOP, _BOTTOM, _RIGHT = 390, 330, 44, 30, 44, 24
 _LINE = 15
+_STEPS = (0.01, 0.02, 0.05, 0.1, 0.2)
 
 
 def share_curves(
@@ -28,7 +30,10 @@ def share_curves(
         All methods in their order, which tells a line's colour.
     """
     lowest = min(float(curve.min()) for curve in curves.values())
-    low = max(0.0, min(0.9, (int(lowest * 20)) / 20))
+    # Lines at whole percents, between three and six of them.
+    step = next(size for size in _STEPS if 1 - lowest <= 6 * size)
+    count = max(3, math.ceil((1 - lowest) / step - 1e-9))
+    low = 1 - count * step
     wide, high = _WIDTH - _LEFT - _RIGHT, _HEIGHT - _TOP - _BOTTOM - _LINE * len(curves)
 
     def x(share: float) -> float:
@@ -38,8 +43,8 @@ def share_curves(
         return _TOP + (1 - (quality - low) / (1 - low)) * high
 
     parts = [f'<text class="name" x="{_LEFT}" y="14">{html.escape(title)}</text>']
-    for i in range(5):
-        quality = low + (1 - low) * i / 4
+    for i in range(count + 1):
+        quality = low + i * step
         parts.append(
             f'<path class="axis" fill="none" d="M{_LEFT},{y(quality):.1f}h{wide}"/>'
             f'<text x="{_LEFT - 6}" y="{y(quality) + 4:.1f}" text-anchor="end">'

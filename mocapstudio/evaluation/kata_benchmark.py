@@ -17,6 +17,7 @@ from mocapstudio.comparison.kata import compare
 from mocapstudio.comparison.labels import labels_of, read_labels
 from mocapstudio.comparison.parameters import PAPER, ROOT, ComparisonParameters
 from mocapstudio.comparison.segments import boundary_errors, suggested
+from mocapstudio.evaluation.alignment_cases import read_labelled
 from mocapstudio.evaluation.kata_peers import Peer, peers
 from mocapstudio.evaluation.kata_warps import Disturbance, perform_again
 from mocapstudio.evaluation.tables import Table
@@ -259,7 +260,7 @@ def suggested_boundaries(
             given = labels_of(file.name, known)
             if given is None:
                 continue
-            recording = formats.read_any(file)[0][0]
+            recording = read_labelled(file, given)
             given, found = given.at_rate(recording.rate), suggested(recording)
             errors.append(boundary_errors(found, given.segments, float(recording.rate)))
             takes, count = takes + 1, count + len({e for s in found for e in (s.start, s.end)})
