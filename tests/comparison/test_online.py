@@ -170,3 +170,16 @@ def test_wrong_weights_and_a_path_that_is_not_kept_are_refused() -> None:
             OnlineAligner(reference, weights)
     with pytest.raises(MocapError, match="path"):
         OnlineAligner(reference).path()
+
+
+@pytest.mark.parametrize(
+    ("variant", "pattern"), [(Variant.PLAIN, "symmetric1"), (Variant.DIAGONAL, "symmetric2")]
+)
+def test_accumulated_costs_are_those_of_dtw_python(variant: Variant, pattern: str) -> None:
+    dtw = pytest.importorskip("dtw", reason="dtw-python is a peer, not a dependency")
+    costs = np.random.default_rng(1).random((40, 55)).astype(np.float32)
+    aligner = OnlineAligner(any_reference(55), variant=variant)
+    peer = dtw.dtw(costs.astype(float), step_pattern=pattern, keep_internals=True)
+    for row, wanted in zip(costs, peer.costMatrix, strict=True):
+        aligner.feed_costs(row)
+        np.testing.assert_allclose(aligner.accumulated()[0], wanted, atol=1e-9)
