@@ -76,8 +76,9 @@ def test_every_command_explains_itself(mocapstudio, name: str) -> None:
 @pytest.mark.parametrize("name", COMMANDS)
 def test_every_command_is_one_function_in_one_file(name: str) -> None:
     function = load(name)
-    assert function.__name__ == name
-    assert function.__module__ == f"mocapstudio.cli.{name}"
+    module = name.replace("-", "_")
+    assert function.__name__ == module
+    assert function.__module__ == f"mocapstudio.cli.{module}"
 
 
 def test_version(mocapstudio) -> None:

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -9,7 +10,7 @@ import pytest
 from mocapstudio.cli.targets import Targets
 from mocapstudio.motion.errors import FileError
 from mocapstudio.motion.skeleton import Skeleton
-from mocapstudio.motion.take import Take
+from mocapstudio.motion.take import Source, Take
 
 
 def take(name: str) -> Take:
@@ -18,7 +19,8 @@ def take(name: str) -> Take:
         ("hips",), np.array([-1]), np.zeros((1, 3)), np.zeros(0, dtype=np.int64), none
     )
     rest = np.tile([0.0, 0.0, 0.0, 1.0], (2, 1, 1))
-    return Take(name, skeleton, rest, np.zeros((2, 1, 3)), rate=Fraction(1))
+    source = Source(Path(name), "made", "")
+    return Take(name, skeleton, rest, np.zeros((2, 1, 3)), rate=Fraction(1), source=source)
 
 
 @pytest.mark.parametrize(
@@ -37,6 +39,13 @@ def test_formats_that_hold_no_joints_become_bvh_in_a_folder(
     path = tmp_path / name
     targets = Targets(tmp_path / "clean", [path], [path])
     assert targets.of(path, take("one"), alone=True) == tmp_path / "clean" / written
+
+
+def test_what_was_solved_from_markers_becomes_bvh(tmp_path: Path) -> None:
+    path = tmp_path / "markers.csv"
+    targets = Targets(tmp_path / "clean", [path], [path])
+    solved = replace(take("one"), source=None)
+    assert targets.of(path, solved, alone=True) == tmp_path / "clean" / "markers.bvh"
 
 
 def test_two_takes_are_not_written_to_one_file(tmp_path: Path) -> None:

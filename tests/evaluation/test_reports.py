@@ -198,7 +198,7 @@ def test_a_hand_cleaned_version_is_scored_with_both_maps(data, tmp_path) -> None
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (("speed", "--cleaned", "a.bvh"), "speed has no truth"),
+        (("speed", "--cleaned", "a.bvh"), "speed has no cleaned take"),
         (("repair", "--truth", "a.json"), "use --cleaned"),
         (("detection", "--truth", "a.json", "--cleaned", "b.bvh"), "exclude each other"),
     ],
