@@ -24,11 +24,11 @@ from mocapstudio.review.state import DocumentState
 
 _WIDTHS = {
     Column.RANK: 36,
-    Column.TIME: 58,
+    Column.TIME: 66,
     Column.FRAME: 46,
     Column.SCORE: 46,
     Column.KIND: 92,
-    Column.VERDICT: 94,
+    Column.VERDICT: 90,
 }
 _JOINT_WIDTH = 90
 _DISPENSABLE = (Column.FRAME, Column.KIND)
