@@ -1,9 +1,71 @@
-"""Files spoilt at random."""
+"""Files spoilt at random, and what reading them costs."""
 
 from __future__ import annotations
 
 import random
-from collections.abc import Sequence
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+LONGEST, LARGEST = 2.0, 200
+"""Seconds of one file, and megabytes that all of them may add to the process."""
+
+
+def peak() -> float:
+    """Megabytes that the process held at most so far; 0 where the system does not tell."""
+    if sys.platform == "win32":
+        return 0.0
+    import resource
+
+    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return most / (1 << 20 if sys.platform == "darwin" else 1 << 10)
+
+
+@dataclass
+class Watch:
+    """How many spoilt files were read, got past the header, and what they cost."""
+
+    files: int = 0
+    read: int = 0
+    past: int = 0
+    longest: float = 0.0
+    slowest: int = -1
+    start: float = field(default_factory=peak)
+
+    @contextmanager
+    def file(self, seed: int) -> Iterator[None]:
+        """Measure what reads one file: no longer than `LONGEST`."""
+        began = time.process_time()
+        try:
+            yield
+        finally:
+            took = time.process_time() - began
+            self.files += 1
+            if took > self.longest:
+                self.longest, self.slowest = took, seed
+            assert took < LONGEST, f"seed {seed}"
+
+    def accepted(self) -> None:
+        """Count a file that was read."""
+        self.read += 1
+        self.past += 1
+
+    def refused(self, place: int | None, header: int) -> None:
+        """Count a file refused at a line or byte."""
+        self.past += (place or 0) > header
+
+    def judge(self, name: str) -> None:
+        """Tell what was seen; fail where it tells nothing or memory grew."""
+        grown = peak() - self.start
+        print(
+            f"{name}: {self.files} files, {self.read} read, {self.past / self.files:.0%} past the"
+            f" header, longest {self.longest:.3f} s (seed {self.slowest}), {grown:.0f} MB more"
+        )
+        assert grown < LARGEST
+        assert self.past >= 0.3 * self.files, "too few get past the header to tell anything"
+        assert self.files // 20 < self.read < self.files, "too hard or too mild to tell anything"
 
 
 def mutated(data: bytes, chance: random.Random, snippets: Sequence[bytes], header: int) -> bytes:
