@@ -364,6 +364,20 @@ def test_bodies_by_prefix_alone() -> None:
     assert "labels of several bodies: Ann, Bob" in found(report)
 
 
+def test_two_bodies_with_the_same_marker_set_are_two_performers() -> None:
+    def named(*names: str) -> Made:
+        labels = [f"{who}:{name}" for name in names for who in ("Ann", "Bob")]
+        return Made(millimetres(points=2 * len(names)), labels=labels, more=Y_UP)
+
+    assert len(read(named("LASI", "RASI", "C7"))[0]) == 2
+    assert len(read(named("Marker1", "Marker2", "Marker3"))[0]) == 1
+
+
+def test_subjects_named_in_the_file_are_told_apart_without_its_saying_how() -> None:
+    takes, _ = read(two_people({"SUBJECTS": {"USED": 2, "NAMES": ["Ann", "Bob"]}}))
+    assert len(takes) == 2
+
+
 def test_one_subject_is_one_take_under_the_files_name() -> None:
     (take,), report = read(Made(millimetres(), labels=["A:1", "A:2", "A:3"], more=Y_UP))
     assert (take.name, take.labels) == ("take", ("A:1", "A:2", "A:3"))
