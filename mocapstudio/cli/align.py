@@ -15,12 +15,8 @@ from mocapstudio.cli.take_options import TakeOptions, with_take_options
 from mocapstudio.motion.errors import FileError
 
 if TYPE_CHECKING:
-    from fractions import Fraction
-
     from mocapstudio.cli.take_files import Workload
-    from mocapstudio.comparison.labels import Labels
     from mocapstudio.comparison.live import LiveAlignment, LiveState
-    from mocapstudio.comparison.weights import JointWeights
     from mocapstudio.formats import Recording
 
 STANDARD_INPUT = Path("-")
@@ -70,6 +66,8 @@ def align(
     """
     from mocapstudio.cli.take_files import Workload
     from mocapstudio.comparison.labels import labels_of, read_labels
+    from mocapstudio.comparison.live import played
+    from mocapstudio.comparison.live_setup import live_alignment
     from mocapstudio.comparison.weights import read_weights
 
     work = Workload(reading)
@@ -81,13 +79,11 @@ def align(
         if known is None:
             raise FileError(labels, f"has no labels of {take.name}")
     if stream == STANDARD_INPUT:
-        live = _prepared(take, (), reading.fps, learnt, known, wait=wait, paper=paper)
+        live = live_alignment(take, (), reading.fps, learnt, known, wait=wait, paper=paper)
         failed = _show(_from_input(live, reading.joint_map))
         raise typer.Exit(2 if failed else 0)
     other = renamed(_one(work, stream), reading.joint_map)
-    live = _prepared(take, (other,), other.rate, learnt, known, wait=wait, paper=paper)
-    from mocapstudio.comparison.live import played
-
+    live = live_alignment(take, (other,), other.rate, learnt, known, wait=wait, paper=paper)
     _show(_record(state, other.span[0]) for state in played(live, other))
 
 
@@ -110,53 +106,23 @@ def renamed(take: Recording, joint_map: Path | None) -> Recording:
     return take if joint_map is None else rename_recording(take, read_joint_map(joint_map))
 
 
-def _prepared(
-    take: Recording,
-    streams: tuple[Recording, ...],
-    rate: Fraction | None,
-    learnt: JointWeights | None,
-    labels: Labels | None,
-    *,
-    wait: bool,
-    paper: bool,
-) -> LiveAlignment:
-    from mocapstudio.comparison.live import LiveAlignment
-    from mocapstudio.comparison.online import OnlineAligner, Variant
-    from mocapstudio.comparison.online_reference import reference_of
-
-    motion = learnt.motion if learnt is not None else not paper
-    reference = reference_of(take, streams, rate, motion=motion)
-    chosen = learnt.fitting(reference) if learnt is not None else None
-    variant = Variant.PATH_LENGTH if paper else Variant.PLAIN
-    if learnt is not None:
-        variant = learnt.variant
-    return LiveAlignment(OnlineAligner(reference, chosen, variant, labels), wait=wait)
-
-
 def _from_input(
     live: LiveAlignment, joint_map: Path | None
 ) -> Iterator[dict[str, Any] | FileError]:
-    from dataclasses import replace
-
     from mocapstudio.comparison.online_features import JointRotations
-    from mocapstudio.comparison.online_stream import check_names, pose_of, read_frames
+    from mocapstudio.comparison.online_stream import StreamPoses, read_frames
     from mocapstudio.motion.joint_map import read_joint_map
 
     features = live.aligner.reference.features
     if not isinstance(features, JointRotations):
         raise FileError(STANDARD_INPUT, "sends joints, the reference holds markers")
     names = read_joint_map(joint_map) if joint_map is not None else {}
-    checked = False
+    poses = StreamPoses(features, names)
     for frame in read_frames(sys.stdin):
         if isinstance(frame, FileError):
             yield frame
-            continue
-        joints = {names.get(name, name): value for name, value in frame.joints.items()}
-        frame = replace(frame, joints=joints)
-        if frame.joints and not checked:
-            check_names(frame, features)
-            checked = True
-        yield _record(live.feed(pose_of(frame, features), frame.time))
+        else:
+            yield _record(live.feed(poses.of(frame)[1], frame.time))
 
 
 def _record(state: LiveState, start: int = 0) -> dict[str, Any]:

@@ -205,6 +205,11 @@ class OnlineAligner:
         begin = kernels.trace_back(self._steps, newest, self.frames - 1, self._end, self._traced)
         return self._traced[begin:].copy()
 
+    @property
+    def pose_costs(self) -> F32:
+        """(R,) distance of the pose that was fed last from every reference frame."""
+        return self._costs.copy()
+
     def accumulated(self) -> tuple[F64, F64]:
         """Accumulated costs D (R,) and path lengths L (R,) of the latest frame."""
         now = self._rows[self.frames % 2]

@@ -1,6 +1,6 @@
 """Streams of poses as JSON lines: ``{"time", "joints": {name: [x, y, z, w]}, "root": [x, y, z]}``.
 
-Rotations are local, as in a take; the root's place is not looked at, since paper 3 aligns by
+Rotations are local, as in a take; the root's place serves to draw her, since paper 3 aligns by
 rotations alone.
 """
 
@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -34,11 +34,14 @@ class StreamFrame:
         Seconds on the stream's clock, or None.
     joints
         (4,) unit quaternion (x, y, z, w) of each joint that was sent.
+    root
+        Where the root is in the world, metres, or None where it was not sent.
     """
 
     line: int
     time: float | None
     joints: Mapping[str, np.ndarray[Any, np.dtype[np.float64]]]
+    root: tuple[float, float, float] | None = None
 
 
 def read_frames(
@@ -51,16 +54,24 @@ def read_frames(
     The frame, or what is wrong with the line: a live stream is not given up for one bad line.
     """
     for number, text in enumerate(lines, 1):
-        if not text.strip():
-            continue
-        try:
-            yield _frame(number, json.loads(text))
-        except json.JSONDecodeError as cause:
-            yield FileError(path, f"is not JSON: {cause.msg}", line=number)
-        except RecursionError:
-            yield FileError(path, "is nested too deeply", line=number)
-        except MocapError as cause:
-            yield FileError(path, str(cause), line=number)
+        if text.strip():
+            yield read_frame(number, text, path)
+
+
+def read_frame(
+    number: int, text: str | bytes, path: Path = STANDARD_INPUT
+) -> StreamFrame | FileError:
+    """Read a line of a stream, the `number`-th of it; returns what is wrong with a bad one."""
+    try:
+        return _frame(number, json.loads(text))
+    except json.JSONDecodeError as cause:
+        return FileError(path, f"is not JSON: {cause.msg}", line=number)
+    except UnicodeDecodeError:
+        return FileError(path, "is not UTF-8 text", line=number)
+    except RecursionError:
+        return FileError(path, "is nested too deeply", line=number)
+    except MocapError as cause:
+        return FileError(path, str(cause), line=number)
 
 
 def pose_of(frame: StreamFrame, features: JointRotations) -> F32:
@@ -75,6 +86,37 @@ def pose_of(frame: StreamFrame, features: JointRotations) -> F32:
                 rotation = rot.multiply(frame.joints.get(above, rot.IDENTITY), rotation)
         pose[row] = rotation
     return pose
+
+
+class StreamPoses:
+    """Makes poses of the frames of one stream.
+
+    Parameters
+    ----------
+    features
+        What is compared.
+    names
+        Joints of the stream, and what they are called in the reference.
+    """
+
+    def __init__(self, features: JointRotations, names: Mapping[str, str] | None = None) -> None:
+        self._features, self._names = features, names or {}
+        self._checked = False
+
+    def of(self, frame: StreamFrame) -> tuple[StreamFrame, F32]:
+        """Return a frame in the reference's names, and its pose; see `pose_of`.
+
+        Raises
+        ------
+        SkeletonMismatchError
+            If the first frame with joints is of another skeleton.
+        """
+        joints = {self._names.get(name, name): value for name, value in frame.joints.items()}
+        frame = replace(frame, joints=joints)
+        if frame.joints and not self._checked:
+            check_names(frame, self._features)
+            self._checked = True
+        return frame, pose_of(frame, self._features)
 
 
 def check_names(frame: StreamFrame, features: JointRotations) -> None:
@@ -103,7 +145,13 @@ def _frame(number: int, content: Any) -> StreamFrame:
     if time is not None and not _is_number(time):
         raise MocapError("time must be a number of seconds")
     found = {name: _rotation(name, value) for name, value in joints.items() if value is not None}
-    return StreamFrame(number, None if time is None else float(time), found)
+    root = content.get("root")
+    if root is not None and not (
+        isinstance(root, list) and len(root) == 3 and all(map(_is_number, root))
+    ):
+        raise MocapError("root must be three numbers, x, y and z")
+    place = None if root is None else (float(root[0]), float(root[1]), float(root[2]))
+    return StreamFrame(number, None if time is None else float(time), found, place)
 
 
 def _rotation(name: str, value: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
