@@ -15,7 +15,7 @@ _PATIENCE = 0.3
 
 
 class JobStrip(QWidget):
-    """Shows the longest-running job; takes no room in the layout's eyes while idle.
+    """Shows what was asked for last and is under way; takes no room in the layout while idle.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class JobStrip(QWidget):
         elif not running:
             self._timer.stop()
         if shown:
-            self._show(shown[0], len(shown))
+            self._show(shown[-1], len(shown))
 
     def _show(self, job: Job, count: int) -> None:
         progress = job.progress
@@ -70,6 +70,8 @@ class JobStrip(QWidget):
         words = [progress.what.capitalize(), f"{100 * progress.done:.0f} %"]
         if left:
             words.append(left)
+        if count > 1:
+            words.append(f"+{count - 1}")
         text = " · ".join(words)
         self._bar.setValue(round(1000 * progress.done))
         room = self._bar.width() - 12
