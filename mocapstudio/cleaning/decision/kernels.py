@@ -216,6 +216,33 @@ def _mean_of(poses: F32, count: int, like: F32, out: F32) -> None:
 
 
 @nb.njit(nogil=True, cache=True)
+def _gather(
+    pose: F32,
+    plane: F32,
+    found: I32,
+    shift: int,
+    poses: F32,
+    angles: NDArray[np.float64],
+    total: NDArray[np.float64],
+) -> tuple[int, float]:
+    """Poses of one joint's neighbours, angles to them and their summed velocity; count, speeds."""
+    last = plane.shape[1] - 1
+    count, speed = 0, 0.0
+    velocity = np.empty(3)
+    total[:] = 0.0
+    for j in found:
+        if j < 0:
+            continue
+        at = j + shift
+        poses[count] = plane[:, at]
+        angles[count] = _between(pose, poses[count])
+        speed += _velocity(plane[:, max(at - 1, 0)], plane[:, min(at + 1, last)], velocity)
+        total += velocity
+        count += 1
+    return count, speed
+
+
+@nb.njit(nogil=True, cache=True)
 def residuals(
     source: F32,
     planes: F32,
@@ -238,29 +265,17 @@ def residuals(
         nearest and of the farthest neighbour, 6 difference of velocity to the neighbours' mean
         velocity and 7 own speed less theirs (degrees a frame), 8 how many neighbours.
     """
-    keep, frames, last = found.shape[2], source.shape[0], planes.shape[2] - 1
+    keep, frames = found.shape[2], source.shape[0]
     poses, mean = np.empty((keep, 4), np.float32), np.empty(4, np.float32)
-    angles, theirs = np.empty(keep), np.empty(3)
-    step, total = np.empty(3), np.empty(3)
+    angles, step, total = np.empty(keep), np.empty(3), np.empty(3)
     for t in range(frames):
         c = centre_of[t]
         shift = t - centres[c]
         for k in range(source.shape[1]):
             part, row = limb[k], out[t, k]
-            count, speed = 0, 0.0
-            total[:] = 0.0
-            for n in range(keep):
-                j = found[c, part, n]
-                if j < 0:
-                    continue
-                j += shift
-                poses[count] = planes[k, :, j]
-                angles[count] = _between(source[t, k], poses[count])
-                speed += _velocity(
-                    planes[k, :, max(j - 1, 0)], planes[k, :, min(j + 1, last)], theirs
-                )
-                total += theirs
-                count += 1
+            count, speed = _gather(
+                source[t, k], planes[k], found[c, part], shift, poses, angles, total
+            )
             if count == 0:
                 row[:] = np.nan
                 row[8] = 0.0

@@ -125,33 +125,44 @@ def next_row(
     -------
     The open end: the reference frame with the smallest D.
     """
-    frames = costs.shape[0]
     steps[:] = 0
+    if first:
+        return _first_row(costs, now, lengths, steps)
+    now[0], lengths[0] = before[0] + np.float64(costs[0]), lengths_before[0] + 1.0
+    steps[0] = STAY
     end = 0
-    for j in range(frames):
+    for j in range(1, costs.shape[0]):
         cost = np.float64(costs[j])
-        total, length, step, traced = np.inf, 1.0, DIAGONAL, DIAGONAL
-        least, least_length = np.inf, 1.0
-        if first and j == 0:
-            total, length = cost, 1.0
-        if not first and j > 0:
-            total, length = before[j - 1] + diagonal * cost, lengths_before[j - 1] + 1.0
-            least, least_length = before[j - 1], lengths_before[j - 1]
-        if not first:
-            other, more = before[j] + cost, lengths_before[j] + 1.0
-            if _less(other, more, total, length, by_length):
-                total, length, step = other, more, STAY
-            if before[j] * least_length < least * lengths_before[j]:
-                least, least_length, traced = before[j], lengths_before[j], STAY
-        if j > 0:
-            other, more = now[j - 1] + cost, lengths[j - 1] + 1.0
-            if _less(other, more, total, length, by_length):
-                total, length, step = other, more, SKIP
-            if now[j - 1] * least_length < least * lengths[j - 1]:
-                traced = SKIP
+        total, length, step = before[j - 1] + diagonal * cost, lengths_before[j - 1] + 1.0, DIAGONAL
+        least, least_length, traced = before[j - 1], lengths_before[j - 1], DIAGONAL
+        other, more = before[j] + cost, lengths_before[j] + 1.0
+        if _less(other, more, total, length, by_length):
+            total, length, step = other, more, STAY
+        if before[j] * least_length < least * lengths_before[j]:
+            least, least_length, traced = before[j], lengths_before[j], STAY
+        other, more = now[j - 1] + cost, lengths[j - 1] + 1.0
+        if _less(other, more, total, length, by_length):
+            total, length, step = other, more, SKIP
+        if now[j - 1] * least_length < least * lengths[j - 1]:
+            traced = SKIP
         now[j], lengths[j] = total, length
         steps[j >> 2] |= np.uint8((traced if by_length else step) << (2 * (j & 3)))
         if total < now[end]:
+            end = j
+    return end
+
+
+@nb.njit(nogil=True, cache=True)
+def _first_row(costs: F32, now: F64, lengths: F64, steps: U8) -> int:
+    """The first input frame: nothing but reference frames has been left behind."""
+    end = 0
+    for j in range(costs.shape[0]):
+        now[j], lengths[j] = np.float64(costs[j]), 1.0
+        if j > 0:
+            now[j] += now[j - 1]
+            lengths[j] += lengths[j - 1]
+            steps[j >> 2] |= np.uint8(SKIP << (2 * (j & 3)))
+        if now[j] < now[end]:
             end = j
     return end
 
