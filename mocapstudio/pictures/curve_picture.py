@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,9 +12,15 @@ from mocapstudio.motion.facing import ROOT_HEADING, ROOT_POSITION, hips_world, s
 from mocapstudio.motion.take import Take
 from mocapstudio.pictures.style import DARK, Palette, Picture, dress, new_figure, to_png
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
 Array = NDArray[np.float64]
 
 _CONTEXT_SECONDS = 1.0
+_LEFT, _RIGHT, _TOP, _BOTTOM = 70, 20, 56, 48
+"""Margins in pixels."""
 
 
 def curve_picture(
@@ -44,19 +52,8 @@ def curve_picture(
     old, new, names, unit = _curves(before, after, row, start, end)
     seconds = np.arange(start, end) / float(before.rate)
     figure = new_figure(size, palette)
-    width, height = size
-    left, right, top, bottom = 70, 20, 56, 48
-    pane = (height - top - bottom) / len(names)
-    for i, name in enumerate(names):
-        axes = figure.add_axes(
-            (
-                left / width,
-                (bottom + pane * (len(names) - 1 - i) + 5) / height,
-                (width - left - right) / width,
-                (pane - 10) / height,
-            )
-        )
-        dress(axes, palette)
+    panes = _panes(figure, size, len(names), palette)
+    for i, (axes, name) in enumerate(zip(panes, names, strict=True)):
         axes.axvspan(
             before.seconds(span[0]), before.seconds(span[1]), color=palette.open, alpha=0.12, lw=0
         )
@@ -67,15 +64,38 @@ def curve_picture(
         axes.set_ylabel(f"{name}  {unit}", color=palette.muted, fontsize=9)
         axes.grid(visible=True, color=palette.border, linewidth=0.5)
         axes.set_axisbelow(True)
-        if i < len(names) - 1:
-            axes.set_xticklabels([])
-        else:
-            axes.set_xlabel("seconds", color=palette.muted, fontsize=10)
-    line = 1 - 34 / height
-    figure.text(left / width, line, title or row, color=palette.text, fontsize=13)
-    for text, colour, place in (("before", palette.wrong, 80), ("after", palette.proposal, right)):
-        figure.text(1 - place / width, line, text, color=colour, fontsize=11, ha="right")
+    for axes in panes[:-1]:
+        axes.set_xticklabels([])
+    panes[-1].set_xlabel("seconds", color=palette.muted, fontsize=10)
+    _headline(figure, size, title or row, palette)
     return Picture(to_png(figure))
+
+
+def _panes(figure: Figure, size: tuple[int, int], count: int, palette: Palette) -> list[Axes]:
+    """Return axes one below the other, which leave room for the headline."""
+    width, height = size
+    pane = (height - _TOP - _BOTTOM) / count
+    panes = []
+    for i in range(count):
+        below = _BOTTOM + pane * (count - 1 - i)
+        axes = figure.add_axes(
+            (
+                _LEFT / width,
+                (below + 5) / height,
+                (width - _LEFT - _RIGHT) / width,
+                (pane - 10) / height,
+            )
+        )
+        dress(axes, palette)
+        panes.append(axes)
+    return panes
+
+
+def _headline(figure: Figure, size: tuple[int, int], title: str, palette: Palette) -> None:
+    width, line = size[0], 1 - 34 / size[1]
+    figure.text(_LEFT / width, line, title, color=palette.text, fontsize=13)
+    for text, colour, place in (("before", palette.wrong, 80), ("after", palette.proposal, _RIGHT)):
+        figure.text(1 - place / width, line, text, color=colour, fontsize=11, ha="right")
 
 
 def _curves(
