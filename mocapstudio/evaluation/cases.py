@@ -63,6 +63,34 @@ class Case:
         return erroneous(self.clean, self.dirty, self.truths, self.rows)
 
 
+@dataclass(frozen=True)
+class Conditions:
+    """What is wrong with the takes and with their context.
+
+    Parameters
+    ----------
+    kinds, errors_per_minute, family
+        See `injection.corrupt`; kinds come in turn; at 0 errors a minute the cases are negative
+        controls.
+    dirty_context
+        Whether about 5 % of the context's frames are erroneous too.
+    foreign
+        Take the context from this other set.
+    recurring
+        How many times the first error of a take comes again.
+    """
+
+    kinds: Sequence[Kind] = KINDS
+    errors_per_minute: float = ERRORS_A_MINUTE
+    family: Family = "standard"
+    dirty_context: bool = False
+    foreign: str | None = None
+    recurring: int = 0
+
+
+USUAL = Conditions()
+
+
 def cases(
     data: Path | Sequence[Path],
     corpus: str = "locomotion",
@@ -70,13 +98,7 @@ def cases(
     seed: int = 0,
     count: int = 6,
     split: Split = "development",
-    *,
-    kinds: Sequence[Kind] = KINDS,
-    errors_per_minute: float = ERRORS_A_MINUTE,
-    family: Family = "standard",
-    dirty_context: bool = False,
-    foreign: str | None = None,
-    recurring: int = 0,
+    conditions: Conditions = USUAL,
 ) -> list[Case]:
     """Make `count` cases that share one context, so that it needs preparing only once.
 
@@ -99,49 +121,60 @@ def cases(
         Number of cases.
     split
         Which half.
-    kinds, errors_per_minute, family
-        See `injection.corrupt`; kinds come in turn; at 0 errors a minute the cases are negative
-        controls.
-    dirty_context
-        Whether about 5 % of the context's frames are erroneous too.
-    foreign
-        Take the context from this other set.
-    recurring
-        How many times the first error of a take comes again.
+    conditions
+        What is wrong with the takes and with their context.
 
     Raises
     ------
     MocapError
         If there are too few takes.
     """
-    rng = np.random.default_rng([seed, len(corpus), CONTEXT_TAKES[context]])
-    tested, around = _chosen(data, corpus, CONTEXT_TAKES[context], split, seed, rng)
-    if foreign is not None and around:
-        others = entries(data, foreign)
-        around = [others[i] for i in rng.permutation(len(others))[: CONTEXT_TAKES[context]]]
-    context_takes = tuple(read_some(around, CONTEXT_TAKES[context]))
+    size = CONTEXT_TAKES[context]
+    rng = np.random.default_rng([seed, len(corpus), size])
+    tested, around = _chosen(data, corpus, size, split, seed, rng)
+    if conditions.foreign is not None and around:
+        others = entries(data, conditions.foreign)
+        around = [others[i] for i in rng.permutation(len(others))[:size]]
+    takes_around = tuple(read_some(around, size))
     takes: list[Take] = []
     if context != "local":
-        takes = read_some(tested, count, context_takes[0]) if context_takes else []
+        takes = read_some(tested, count, takes_around[0]) if takes_around else []
         if not takes:
             raise MocapError(f"too few takes of one skeleton in the set {corpus!r}")
-    if dirty_context:
-        context_takes = tuple(corrupt(t, rng, DIRTY_A_MINUTE)[0] for t in context_takes)
+    if conditions.dirty_context:
+        takes_around = tuple(corrupt(t, rng, DIRTY_A_MINUTE)[0] for t in takes_around)
+    shares = _Shares(conditions, rng)
     made: list[Case] = []
-    # Dealt out evenly instead of drawn, so that few cases already hold their share of errors.
-    due, in_turn = 0.5, _in_turn(kinds, rng)
     for i in range(count):
-        clean, ignore = _joined(tested, i, rng) if not takes else (takes[i % len(takes)], None)
-        case_rng = np.random.default_rng([seed, i, len(context_takes), len(corpus)])
-        due += errors_per_minute * clean.duration / 60.0
-        mine = [next(in_turn) for _ in range(int(due))]
-        due -= len(mine)
-        dirty, truths = inject_each(clean, mine, case_rng, family=family)
-        if truths and recurring:
-            dirty, again = recur(dirty, truths[0], case_rng, recurring, avoid=truths[1:])
-            truths = tuple(sorted((*again, *truths[1:]), key=lambda t: t.start))
-        made.append(Case(dirty, clean, truths, context_takes, ignore))
+        clean, ignore = (takes[i % len(takes)], None) if takes else _joined(tested, i, rng)
+        case_rng = np.random.default_rng([seed, i, len(takes_around), len(corpus)])
+        dirty, truths = _spoilt(clean, shares.of(clean), conditions, case_rng)
+        made.append(Case(dirty, clean, truths, takes_around, ignore))
     return made
+
+
+class _Shares:
+    """Deals errors out evenly, not drawn, so that few cases already hold their share of them."""
+
+    def __init__(self, conditions: Conditions, rng: np.random.Generator) -> None:
+        self._a_minute = conditions.errors_per_minute
+        self._due, self._in_turn = 0.5, _in_turn(conditions.kinds, rng)
+
+    def of(self, take: Take) -> list[Kind]:
+        self._due += self._a_minute * take.duration / 60.0
+        share = [next(self._in_turn) for _ in range(int(self._due))]
+        self._due -= len(share)
+        return share
+
+
+def _spoilt(
+    clean: Take, kinds: Sequence[Kind], conditions: Conditions, rng: np.random.Generator
+) -> tuple[Take, tuple[Truth, ...]]:
+    dirty, truths = inject_each(clean, kinds, rng, family=conditions.family)
+    if truths and conditions.recurring:
+        dirty, again = recur(dirty, truths[0], rng, conditions.recurring, avoid=truths[1:])
+        truths = tuple(sorted((*again, *truths[1:]), key=lambda t: t.start))
+    return dirty, truths
 
 
 def _in_turn(kinds: Sequence[Kind], rng: np.random.Generator) -> Iterator[Kind]:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from mocapstudio.cleaning.model import Kind
 from mocapstudio.evaluation import baselines, detectors
 from mocapstudio.evaluation.alternatives import tuned_alternatives
-from mocapstudio.evaluation.cases import CONTEXT_TAKES, ContextSize, cases
+from mocapstudio.evaluation.cases import CONTEXT_TAKES, USUAL, Conditions, ContextSize, cases
 from mocapstudio.evaluation.corpora import NAMED, available, entries, split
 from mocapstudio.evaluation.detection_benchmark import DetectionScores, Detector, evaluating
 from mocapstudio.evaluation.injection import KINDS
@@ -60,8 +60,8 @@ class Experiment:
         For people.
     corpus, context
         See `cases.cases`.
-    options
-        Further arguments of `cases.cases`.
+    conditions
+        What is wrong with the takes and with their context.
     methods
         Of `METHODS`.
     """
@@ -69,8 +69,18 @@ class Experiment:
     title: str
     corpus: str
     context: ContextSize
-    options: Mapping[str, Any] = field(default_factory=dict)
+    conditions: Conditions = USUAL
     methods: tuple[str, ...] = (OURS,)
+
+    @property
+    def is_main(self) -> bool:
+        """Whether it is a row of the main table, which the paper has too."""
+        return self.conditions == USUAL
+
+    @property
+    def is_of_one_kind(self) -> bool:
+        """Whether one kind of error is measured by itself."""
+        return len(self.conditions.kinds) == 1
 
 
 @dataclass(frozen=True)
@@ -95,15 +105,14 @@ class Section:
     def to_json(self) -> dict[str, Any]:
         """Plain objects for JSON."""
         key = (self.experiment.corpus, self.experiment.context)
-        plain = not self.experiment.options
         return {
             "title": self.experiment.title,
             "corpus": self.experiment.corpus,
             "context": self.experiment.context,
             "errors": self.errors,
             "takes": list(self.takes),
-            "paper": PAPER.get(key) if plain else None,
-            "reach": REACH.get(key) if plain else None,
+            "paper": PAPER.get(key) if self.experiment.is_main else None,
+            "reach": REACH.get(key) if self.experiment.is_main else None,
             "rows": [row.to_json() for row in self.rows],
         }
 
@@ -114,7 +123,7 @@ def experiments(
     """Every row that the sets of takes allow; `brief` leaves out all but the main table."""
     main = [s for s in sets if s != "own rate"]
     plan = [
-        Experiment(f"{corpus}, {context}", corpus, context, {}, METHODS)
+        Experiment(f"{corpus}, {context}", corpus, context, USUAL, METHODS)
         for corpus in main
         for context in contexts
     ]
@@ -124,30 +133,25 @@ def experiments(
     for corpus in main:
         plan += _further(corpus, widest, sets)
     if "own rate" in sets:
-        options = {"kinds": SHARP}
         title = f"pops, jitter (above {JITTER_HERTZ:g} Hz) and root errors at 120 fps"
-        plan.append(Experiment(title, "own rate", widest, options))
+        plan.append(Experiment(title, "own rate", widest, Conditions(kinds=SHARP)))
     return plan
 
 
 def _further(corpus: str, context: ContextSize, sets: Sequence[str]) -> list[Experiment]:
-    plan = [
-        Experiment(f"{corpus}, untouched takes", corpus, context, {"errors_per_minute": 0.0}),
-        Experiment(f"{corpus}, other shapes", corpus, context, {"family": "held-out"}),
-        Experiment(f"{corpus}, recurring errors", corpus, context, {"recurring": 3}),
-    ]
+    under = {
+        "untouched takes": Conditions(errors_per_minute=0.0),
+        "other shapes": Conditions(family="held-out"),
+        "recurring errors": Conditions(recurring=3),
+    }
     if context != "local":
-        plan.append(
-            Experiment(f"{corpus}, dirty context", corpus, context, {"dirty_context": True})
-        )
+        under["dirty context"] = Conditions(dirty_context=True)
         other = next((s for s in ("varied", "locomotion") if s in sets and s != corpus), None)
         if other and corpus in ("varied", "locomotion"):
-            foreign = {"foreign": other}
-            plan.append(Experiment(f"{corpus}, context {other}", corpus, context, foreign))
+            under[f"context {other}"] = Conditions(foreign=other)
     for kind in KINDS:
-        options: dict[str, Any] = {"kinds": (kind,), "errors_per_minute": ALONE_A_MINUTE}
-        plan.append(Experiment(f"{corpus}, {kind.value} alone", corpus, context, options))
-    return plan
+        under[f"{kind.value} alone"] = Conditions((kind,), ALONE_A_MINUTE)
+    return [Experiment(f"{corpus}, {name}", corpus, context, what) for name, what in under.items()]
 
 
 def detecting(
@@ -206,7 +210,7 @@ def _run(
             seed,
             limit,
             "test",
-            **experiment.options,
+            experiment.conditions,
         )
     except MocapError as cause:
         yield Progress(place[0] / place[1], f"{experiment.title}: left out, {cause}")

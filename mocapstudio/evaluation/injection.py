@@ -113,7 +113,6 @@ def inject(
     rate = float(take.rate)
     if kind is Kind.JITTER and rate < 26:
         raise InjectionError(f"jitter above 12 Hz does not exist at {rate:g} frames a second")
-    given = tuple(joints) if joints is not None else None
     for _ in range(_ATTEMPTS):
         frames = shapes.length(kind, rate, rng)
         at = _place(take, frames, rng, avoid) if start is None else start
@@ -121,12 +120,9 @@ def inject(
             continue
         low, high = shapes.magnitude_bounds(kind)
         size = float(rng.uniform(low, high)) if magnitude is None else float(magnitude)
-        names = _choose(take, kind, given, rng)
-        params: dict[str, Any] = {"family": family, "joints": list(names), "magnitude": size}
-        if kind is Kind.SWAP:
-            params["manner"] = swaps.draw_manner(family, rng)
-        seed = int(rng.integers(2**31))
-        found = _settle(take, Truth(kind, names, at, at + frames, params, seed), magnitude)
+        names = _choose(take, kind, joints, rng)
+        truth = _drawn(kind, names, (at, at + frames), size, family, rng)
+        found = _settle(take, truth, magnitude)
         if found is not None:
             return found
     raise InjectionError(f"no place for an error of kind {kind.value} in take {take.name}")
@@ -202,6 +198,20 @@ def recur(
     return spoilt, tuple(sorted(truths, key=lambda t: t.start))
 
 
+def _drawn(
+    kind: Kind,
+    names: tuple[str, ...],
+    span: tuple[int, int],
+    magnitude: float,
+    family: Family,
+    rng: np.random.Generator,
+) -> Truth:
+    params: dict[str, Any] = {"family": family, "joints": list(names), "magnitude": magnitude}
+    if kind is Kind.SWAP:
+        params["manner"] = swaps.draw_manner(family, rng)
+    return Truth(kind, names, *span, params, int(rng.integers(2**31)))
+
+
 def _settle(take: Take, truth: Truth, magnitude: float | None) -> tuple[Take, Truth] | None:
     """Apply, and keep the result only where it is an error, with the rows that depart."""
     spoilt = apply(take, truth)
@@ -233,7 +243,7 @@ def _place(
 
 
 def _choose(
-    take: Take, kind: Kind, given: tuple[str, ...] | None, rng: np.random.Generator
+    take: Take, kind: Kind, given: Sequence[str] | None, rng: np.random.Generator
 ) -> tuple[str, ...]:
     skeleton = take.skeleton
     if kind in _ROOT_KINDS:
@@ -245,7 +255,7 @@ def _choose(
         chosen = pairs[int(rng.integers(len(pairs)))]
         return tuple(skeleton.names[j] for side in chosen for j in side)
     if given is not None:
-        return given
+        return tuple(given)
     moving = _moving(take)
     many = kind is Kind.LIMB or (kind in (Kind.FREEZE, Kind.GAP) and rng.random() < 0.3)
     chains = _chains(skeleton, moving) if many else []

@@ -69,7 +69,7 @@ def table_html(table: Table) -> str:
 
 def curves_html(sections: Sequence[Section]) -> str:
     """Precision over recall at word level, one picture for each of the paper's rows."""
-    figures = "".join(_curve(s) for s in sections if not s.experiment.options)
+    figures = "".join(_curve(s) for s in sections if s.experiment.is_main)
     return f'<h2>Precision and recall of words</h2><div class="curves">{figures}</div>'
 
 

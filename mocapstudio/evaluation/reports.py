@@ -12,7 +12,7 @@ import numpy as np
 
 from mocapstudio.cleaning.detection import detect
 from mocapstudio.evaluation import detectors, page
-from mocapstudio.evaluation.cases import Case, ContextSize, cases
+from mocapstudio.evaluation.cases import Case, Conditions, ContextSize, cases
 from mocapstudio.evaluation.corpora import available
 from mocapstudio.evaluation.detection_benchmark import DetectionScores, evaluating
 from mocapstudio.evaluation.experiments import Experiment, Section, detecting, split_record
@@ -92,11 +92,11 @@ def repair(
     sets = [s for s in available(tuple(data)) if s != "own rate"]
     for corpus in sets:
         yield Progress(0.0, f"{corpus}: tuning the peers")
-        more: dict[str, Any] = {"errors_per_minute": REPAIR_ERRORS_A_MINUTE}
+        many = Conditions(errors_per_minute=REPAIR_ERRORS_A_MINUTE)
         size: ContextSize = "small" if context == "local" else context
-        training = cases(tuple(data), corpus, size, seed, limit, "development", **more)
+        training = cases(tuple(data), corpus, size, seed, limit, "development", many)
         peers: dict[str, Repairer] = {k: by_peer(p) for k, p in tuned_peers(training).items()}
-        tested = cases(tuple(data), corpus, context, seed, limit, "test", **more)
+        tested = cases(tuple(data), corpus, context, seed, limit, "test", many)
         ours: dict[str, Repairer] = {
             "ours, true spans": ours_given_truth,
             "ours, own flags": ours_as_detected,

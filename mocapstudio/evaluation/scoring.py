@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -220,20 +220,7 @@ def score(
     spans = _kept(word_spans(frames, rate), ignore)
     wrong_words = _by_word(mask, spans)
     false = [f for f in flags if _is_false(f, mask, rows, rate)]
-    kinds: dict[Kind, KindScore] = {}
-    edges: list[int] = []
-    for truth in truths:
-        one, distances = _event(truth, found, mask, rows)
-        if one.events:
-            kinds[truth.kind] = kinds.get(truth.kind, KindScore()) + one
-            edges += distances
-    scored = Scores(
-        flags=len(flags),
-        false_flags=len(false),
-        minutes=float((~ignore).sum()) / rate / 60.0,
-        kinds=kinds,
-        edges=tuple(edges),
-    )
+    kinds, edges = _events(truths, found, mask, rows)
     words, cells = _word_counts(found, wrong_words, spans)
     curve = {}
     for threshold in THRESHOLDS if sweep is None else sorted(sweep):
@@ -241,7 +228,16 @@ def score(
         least = threshold if sweep is None else 0.0
         over = (score_map(chosen, rows, frames) >= least) & ~ignore[:, None]
         curve[threshold] = _word_counts(over, wrong_words, spans)
-    return replace(scored, words=words, word_joints=cells, curve=curve)
+    return Scores(
+        words=words,
+        word_joints=cells,
+        flags=len(flags),
+        false_flags=len(false),
+        minutes=float((~ignore).sum()) / rate / 60.0,
+        kinds=kinds,
+        edges=edges,
+        curve=curve,
+    )
 
 
 def _kept(spans: NDArray[np.int64], ignore: Mask) -> NDArray[np.int64]:
@@ -268,6 +264,20 @@ def _is_false(flag: Flag, mask: Mask, rows: Sequence[str], rate: float) -> bool:
     near = round(NEAR_FRAMES * rate / WORD_RATE)
     around = slice(max(0, flag.start - near), flag.end + near)
     return not mask[around, rows.index(flag.joint)].any()
+
+
+def _events(
+    truths: Sequence[Truth], found: Mask, mask: Mask, rows: Sequence[str]
+) -> tuple[dict[Kind, KindScore], tuple[int, ...]]:
+    """Return what was found by kind of error, and the distances of the spans' edges."""
+    kinds: dict[Kind, KindScore] = {}
+    edges: list[int] = []
+    for truth in truths:
+        one, distances = _event(truth, found, mask, rows)
+        if one.events:
+            kinds[truth.kind] = kinds.get(truth.kind, KindScore()) + one
+            edges += distances
+    return kinds, tuple(edges)
 
 
 def _event(

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from mocapstudio.evaluation.detection_benchmark import DetectionScores
-from mocapstudio.evaluation.experiments import ALONE_A_MINUTE, PAPER, REACH, Section
+from mocapstudio.evaluation.experiments import PAPER, REACH, Section
 from mocapstudio.evaluation.repair_benchmark import LONG_SECONDS, RepairScores
 from mocapstudio.evaluation.speed_benchmark import SpeedRow, growth
 
@@ -47,8 +47,8 @@ _DETECTION_HEAD = (
 
 def detection_tables(sections: Sequence[Section]) -> list[Table]:
     """One table for each row of the paper's, one for what goes beyond, one by kind of error."""
-    main = [s for s in sections if not s.experiment.options]
-    alone = [s for s in sections if "kinds" in s.experiment.options and _is_alone(s)]
+    main = [s for s in sections if s.experiment.is_main]
+    alone = [s for s in sections if s.experiment.is_of_one_kind]
     rest = [s for s in sections if s not in main and s not in alone]
     tables = [_main_table(section) for section in main]
     if rest:
@@ -57,10 +57,6 @@ def detection_tables(sections: Sequence[Section]) -> list[Table]:
     if alone:
         tables.append(_kind_table(alone))
     return tables
-
-
-def _is_alone(section: Section) -> bool:
-    return section.experiment.options.get("errors_per_minute") == ALONE_A_MINUTE
 
 
 def _main_table(section: Section) -> Table:

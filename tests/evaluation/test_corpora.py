@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mocapstudio.evaluation.cases import cases
+from mocapstudio.evaluation.cases import Conditions, cases
 from mocapstudio.evaluation.corpora import available, entries, join, read_take, split
 from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.errors import MocapError
@@ -85,14 +85,16 @@ def test_the_context_never_holds_the_take(own: Path) -> None:
 
 
 def test_errors_are_dealt_out_evenly(data: Path) -> None:
-    made = cases(data, "locomotion", "local", count=9, errors_per_minute=6.0)
+    six = Conditions(errors_per_minute=6.0)
+    made = cases(data, "locomotion", "local", count=9, conditions=six)
     minutes = sum(case.clean.duration for case in made) / 60
     truths = [truth for case in made for truth in case.truths]
     assert abs(len(truths) - 6.0 * minutes) <= 2
     assert len({truth.kind for truth in truths[:14]}) >= 13
-    again = cases(data, "locomotion", "local", count=9, errors_per_minute=6.0)
+    again = cases(data, "locomotion", "local", count=9, conditions=six)
     assert [case.truths for case in again] == [case.truths for case in made]
-    assert not any(c.truths for c in cases(data, "locomotion", "local", errors_per_minute=0.0))
+    untouched = cases(data, "locomotion", "local", conditions=Conditions(errors_per_minute=0.0))
+    assert not any(c.truths for c in untouched)
 
 
 def test_takes_of_another_skeleton_stay_out(own: Path) -> None:

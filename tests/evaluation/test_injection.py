@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from mocapstudio.cleaning.model import Kind
 from mocapstudio.evaluation import shapes, swaps
-from mocapstudio.evaluation.cases import cases
+from mocapstudio.evaluation.cases import Conditions, cases
 from mocapstudio.evaluation.injection import (
     KINDS,
     InjectionError,
@@ -240,7 +240,8 @@ def test_what_cannot_be_injected_is_refused(make_take) -> None:
 
 
 def test_errors_find_their_place_in_real_takes(data) -> None:
-    for case in cases(data, "locomotion", "local", count=2, errors_per_minute=30.0):
+    many = Conditions(errors_per_minute=30.0)
+    for case in cases(data, "locomotion", "local", count=2, conditions=many):
         assert len(case.truths) >= 3
         mask = case.mask()
         for truth in case.truths:

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 from mocapstudio.cleaning.model import Kind
 from mocapstudio.cli.evaluate import evaluate
-from mocapstudio.evaluation.cases import Case
+from mocapstudio.evaluation.cases import USUAL, Case
 from mocapstudio.evaluation.detection_benchmark import DetectionScores, evaluate_detector
 from mocapstudio.evaluation.experiments import (
     METHODS,
@@ -43,7 +43,7 @@ def section(make_take) -> Section:
     row = evaluate_detector(detector_of(lambda t, c: (case.rows, values)), [case], "some <method>")
     nothing = evaluate_detector(lambda t, c: [], [case], "nothing")
     return Section(
-        Experiment("locomotion, small", "locomotion", "small", {}, METHODS),
+        Experiment("locomotion, small", "locomotion", "small", USUAL, METHODS),
         (row, nothing), len(truths), ("swinging",),
     )  # fmt: skip
 
@@ -101,15 +101,15 @@ def test_the_table_shows_the_papers_figures_beside_ours(section) -> None:
 
 def test_the_plan_holds_every_row_of_the_main_table_and_every_kind() -> None:
     plan = experiments(("locomotion", "varied", "own rate"), ("local", "small", "large"))
-    main = {(e.corpus, e.context) for e in plan if not e.options}
+    main = {(e.corpus, e.context) for e in plan if e.is_main}
     assert main == set(PAPER) == set(REACH)
     for corpus in ("locomotion", "varied"):
-        alone = {e.options["kinds"] for e in plan if e.corpus == corpus and "kinds" in e.options}
+        alone = {e.conditions.kinds for e in plan if e.corpus == corpus and e.is_of_one_kind}
         assert alone == {(kind,) for kind in KINDS}
-    assert {e.context for e in plan if e.options} == {"large"}
+    assert {e.context for e in plan if not e.is_main} == {"large"}
     own = [e for e in plan if e.corpus == "own rate"]
     assert len(own) == 1
-    assert Kind.POP in own[0].options["kinds"]
+    assert Kind.POP in own[0].conditions.kinds
     assert len(experiments(("own",), ("local",), brief=True)) == 1
 
 
