@@ -7,7 +7,6 @@ of source and reference, where red, green and blue are x, y and z, joined by lin
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -17,7 +16,14 @@ from numpy.typing import NDArray
 
 from mocapstudio.comparison.model import Comparison
 from mocapstudio.comparison.segments import CarriedSegment
-from mocapstudio.pictures.style import DARK, LIGHT, Palette, Picture, dress, new_figure, to_png
+from mocapstudio.pictures.comparison_curves import (
+    colours_of,
+    columns,
+    draw_difference,
+    draw_misalignment,
+    draw_timing_key,
+)
+from mocapstudio.pictures.style import DARK, Palette, Picture, dress, new_figure, to_png, to_svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,12 +36,6 @@ _SHARES = (1.5, 1.5, 2.4, 0.8, 2.4)
 """Heights of pose difference, misalignment, source map, timing lines, reference map."""
 
 _LINES = 110
-_SIGNS = (-1, 0, 1)
-_WORDS = ("delayed", "on time", "hastened")
-_TIMING = {
-    DARK: ("#f2684f", "#f0cd53", "#57a5f7"),
-    LIGHT: ("#d0402a", "#c99a00", "#2070d0"),
-}
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,9 +74,12 @@ def comparison_picture(
     figure = new_figure(size, palette)
     axes = _axes(figure, size)
     times = _times(comparison)
-    colours = np.array(_timing_colours(palette))[comparison.timing.astype(int) + 1]
-    _difference(axes[0], comparison, times, palette)
-    _misalignment(axes[1], comparison, times, colours, palette)
+    draw_difference(axes[0], comparison, times.source, palette)
+    unit = "radians" if comparison.features == "rotations" else "of the unit box"
+    _name(axes[0], "pose difference", unit, palette)
+    draw_misalignment(axes[1], comparison, times.source, palette)
+    kind = "seconds" if comparison.true_speed else "s, tempo apart"
+    _name(axes[1], "misalignment", kind, palette)
     width = size[0] - _LEFT - _RIGHT
     for one, poses, label, at in (
         (axes[2], comparison.source_poses, "source", times.source),
@@ -84,7 +87,7 @@ def comparison_picture(
     ):
         _heat_map(one, poses, at, width)
         _name_rows(one, comparison, label, palette, size)
-    _timing_lines(axes[3], times, colours, palette)
+    _timing_lines(axes[3], times, colours_of(comparison, palette), palette)
     _mark_segments(axes, segments, times, palette)
     for one in axes:
         one.set_xlim(*times.span)
@@ -92,11 +95,7 @@ def comparison_picture(
         one.tick_params(labelbottom=False, bottom=False)
     axes[4].set_xlabel(times.labels[0], color=palette.muted, fontsize=10)
     _title(figure, comparison, title, palette, size)
-    return Picture(_to_svg(figure) if svg else to_png(figure))
-
-
-def _timing_colours(palette: Palette) -> tuple[str, str, str]:
-    return _TIMING[LIGHT if palette == LIGHT else DARK]
+    return Picture(to_svg(figure) if svg else to_png(figure))
 
 
 def _axes(figure: Figure, size: tuple[int, int]) -> list[Axes]:
@@ -130,52 +129,9 @@ def _times(comparison: Comparison) -> _Times:
     return _Times(source, reference * stretch, matched * stretch, span, (label, ""))
 
 
-def _difference(axes: Axes, comparison: Comparison, times: _Times, palette: Palette) -> None:
-    dress(axes, palette)
-    starts = _columns(len(times.source), int(axes.get_window_extent().width))
-    values = np.add.reduceat(comparison.pose_difference, starts)
-    values = values / np.diff(np.append(starts, len(times.source)))
-    timing, seconds = comparison.timing[starts], times.source[starts]
-    for at, value in enumerate(_timing_colours(palette)):
-        here = timing == _SIGNS[at]
-        # A run is drawn up to the next column, so that no gap shows where the colour changes.
-        here = here | np.concatenate([[False], here[:-1]])
-        axes.fill_between(seconds, values, where=list(here), color=value, linewidth=0)
-    axes.set_ylim(0, max(float(values.max()) * 1.08, 1e-3))
-    axes.locator_params(axis="y", nbins=4)
-    unit = "radians" if comparison.features == "rotations" else "of the unit box"
-    _name(axes, "pose difference", unit, palette)
-
-
-def _misalignment(
-    axes: Axes,
-    comparison: Comparison,
-    times: _Times,
-    colours: NDArray[np.str_],
-    palette: Palette,
-) -> None:
-    from matplotlib.collections import LineCollection
-
-    dress(axes, palette)
-    gap = comparison.misalignment if comparison.true_speed else comparison.misalignment_relative
-    axes.axhline(0.0, color=palette.border, linewidth=1.0)
-    points = np.stack([times.source, gap], axis=1)
-    pieces = np.stack([points[:-1], points[1:]], axis=1)
-    axes.add_collection(LineCollection(list(pieces), colors=list(colours[:-1]), linewidths=2.0))
-    reach = max(float(np.abs(gap).max()) * 1.12, 0.05)
-    axes.set_ylim(-reach, reach)
-    for y, word in ((0.96, "ahead"), (0.04, "behind")):
-        axes.text(
-            0.005, y, word, transform=axes.transAxes, ha="left", va="top" if y > 0.5 else "bottom",
-            color=palette.muted, fontsize=9,
-        )  # fmt: skip
-    kind = "seconds" if comparison.true_speed else "s, tempo apart"
-    _name(axes, "misalignment", kind, palette)
-
-
 def _heat_map(axes: Axes, poses: NDArray[np.float32], at: NDArray[np.float64], most: int) -> None:
     frames = len(poses)
-    starts = _columns(frames, most)
+    starts = columns(frames, most)
     counts = np.diff(np.append(starts, frames))[:, None, None]
     image = np.add.reduceat(poses, starts, axis=0) / counts
     half = max(0.5 * (at[-1] / max(frames - 1, 1)), 1e-3)
@@ -185,12 +141,6 @@ def _heat_map(axes: Axes, poses: NDArray[np.float32], at: NDArray[np.float64], m
         interpolation="nearest",
         extent=(-half, float(at[-1]) + half, poses.shape[1] - 0.5, -0.5),
     )
-
-
-def _columns(frames: int, most: int) -> NDArray[np.int64]:
-    """First frame of each column of pixels, of which there are at most `most`."""
-    count = min(max(most, 1), frames)
-    return np.arange(count) * frames // count
 
 
 def _timing_lines(axes: Axes, times: _Times, colours: NDArray[np.str_], palette: Palette) -> None:
@@ -287,22 +237,6 @@ def _title(
     about = f"dissimilarity {comparison.dissimilarity:.3f}"
     about += f" · doubt {comparison.doubt:.0%}"
     figure.text(1 - _RIGHT / width, line, about, color=palette.muted, fontsize=10, ha="right")
-    x = 1 - (_RIGHT + 330) / width
-    for word, colour in zip(_WORDS, _timing_colours(palette), strict=True):
-        share = np.mean(comparison.timing == _SIGNS[_WORDS.index(word)])
-        figure.text(x, line - 22 / height, "■", color=colour, fontsize=11)
-        text = f"{word} {share:.0%}"
-        figure.text(x + 16 / width, line - 22 / height, text, color=palette.muted, fontsize=9)
-        x += 112 / width
-
-
-def _to_svg(figure: Figure) -> bytes:
-    from matplotlib import rc_context
-
-    buffer = io.BytesIO()
-    # Text stays text, and equal pictures are equal files.
-    with rc_context({"svg.fonttype": "none", "svg.hashsalt": "mocapstudio"}):
-        figure.savefig(
-            buffer, format="svg", facecolor=figure.get_facecolor(), metadata={"Date": None}
-        )
-    return buffer.getvalue()
+    draw_timing_key(
+        figure, comparison.timing, (1 - (_RIGHT + 330) / width, line - 22 / height), palette
+    )
