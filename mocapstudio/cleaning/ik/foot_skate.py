@@ -9,8 +9,7 @@ floor could not be met, choose again where it is stood on.
 from __future__ import annotations
 
 from collections.abc import Generator, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,8 +22,8 @@ from mocapstudio.cleaning.ik.ranges import JointRanges, joint_ranges
 from mocapstudio.cleaning.ik.slide import Slide, places, slide
 from mocapstudio.cleaning.ik.solve import solve
 from mocapstudio.cleaning.ik.targets import Hold, chosen_again, holds
-from mocapstudio.cleaning.parameters import Schema
 from mocapstudio.motion.declared import Declared
+from mocapstudio.motion.parameters import bounded
 from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.take import Take
 
@@ -34,18 +33,14 @@ _MET = 1e-3
 """Metres: a target is reached where its point comes this close."""
 
 
-def _parameter(default: Any, *schema: Any) -> Any:
-    return field(default=default, metadata={"schema": Schema(*schema)})
-
-
 @dataclass(frozen=True)
 class SkateParameters:
     """What a clean-up depends on."""
 
-    easing: float = _parameter(
+    easing: float = bounded(
         0.3, "Easing", "s", 0.02, 2.0, "Time before and after a contact over which motion is eased."
     )
-    root_reach: float = _parameter(
+    root_reach: float = bounded(
         0.06, "Hips give way", "legs", 0.0, 0.5, "How far the hips may move, in leg lengths."
     )
 
