@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from mocapstudio.comparison.model import Segment
 from mocapstudio.formats.atomic import write_whole
+from mocapstudio.formats.json_file import read_json
 from mocapstudio.formats.options import parse_rate
 from mocapstudio.formats.registry import readable_suffixes
 from mocapstudio.motion.errors import FileError, MocapError
@@ -105,17 +106,7 @@ def read_labels(path: Path) -> list[Labels]:
     FileError
         If the file cannot be read, is no JSON, or does not hold labels.
     """
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as cause:
-        why = (cause.strerror or str(cause)).lower()
-        raise FileError(path, f"cannot be read: {why}") from cause
-    except UnicodeDecodeError as cause:
-        raise FileError(path, "is not UTF-8 text", offset=cause.start) from cause
-    except json.JSONDecodeError as cause:
-        raise FileError(path, f"is not JSON: {cause.msg}", line=cause.lineno) from cause
-    except RecursionError as cause:
-        raise FileError(path, "does not hold segment labels: nested too deeply") from cause
+    content = read_json(path, "segment labels")
     objects = content if isinstance(content, list) else [content]
     try:
         return [_labels(one) for one in objects]

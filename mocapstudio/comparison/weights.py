@@ -11,6 +11,7 @@ from typing import Any
 from mocapstudio.comparison.online import Variant
 from mocapstudio.comparison.online_reference import MOTION, Reference
 from mocapstudio.formats.atomic import write_whole
+from mocapstudio.formats.json_file import read_json
 from mocapstudio.motion.errors import FileError, MocapError, ParameterError, SkeletonMismatchError
 
 
@@ -119,17 +120,7 @@ def read_weights(path: Path) -> JointWeights:
     FileError
         If the file cannot be read, is no JSON, or does not hold weights.
     """
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as cause:
-        why = (cause.strerror or str(cause)).lower()
-        raise FileError(path, f"cannot be read: {why}") from cause
-    except UnicodeDecodeError as cause:
-        raise FileError(path, "is not UTF-8 text", offset=cause.start) from cause
-    except json.JSONDecodeError as cause:
-        raise FileError(path, f"is not JSON: {cause.msg}", line=cause.lineno) from cause
-    except RecursionError as cause:
-        raise FileError(path, "does not hold joint weights: nested too deeply") from cause
+    content = read_json(path, "joint weights")
     try:
         return _from_json(content)
     except (MocapError, KeyError, TypeError, ValueError, AttributeError) as cause:

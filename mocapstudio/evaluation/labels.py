@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -23,6 +22,7 @@ from mocapstudio.evaluation.truth import (
     labelled,
     limits,
 )
+from mocapstudio.formats.json_file import read_json
 from mocapstudio.motion.errors import FileError, MocapError
 from mocapstudio.motion.take import Take
 
@@ -39,14 +39,7 @@ def read_labels(path: Path) -> dict[str, tuple[Truth, ...]]:
     FileError
         If the file cannot be read or is neither.
     """
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as cause:
-        raise FileError(path, f"cannot be read: {cause.strerror}") from cause
-    except UnicodeDecodeError as cause:
-        raise FileError(path, "is not UTF-8 text", offset=cause.start) from cause
-    except json.JSONDecodeError as cause:
-        raise FileError(path, f"is not JSON: {cause.msg}", line=cause.lineno) from cause
+    content = read_json(path, "labels of errors")
     try:
         return {take: tuple(truths) for take, truths in _by_take(content).items()}
     except (MocapError, KeyError, TypeError, AttributeError) as cause:
