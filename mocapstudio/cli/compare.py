@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from mocapstudio.cli.comparison_options import ComparisonOptions
 from mocapstudio.cli.output import JsonPath, check_writable, write_json
-from mocapstudio.cli.take_options import Fps, JointMap, TakeOptions, Unit, UpAxis
+from mocapstudio.cli.take_options import TakeOptions, with_options, with_take_options
 from mocapstudio.motion.errors import FileError
 
 if TYPE_CHECKING:
@@ -16,51 +17,40 @@ if TYPE_CHECKING:
 
     from mocapstudio.cli.comparison_job import Compared
 
-Features = Literal["box", "root", "rotations"]
+LabelsFile = Annotated[
+    Path | None,
+    typer.Option("--labels", metavar="FILE", help="Segments of the reference (JSON)."),
+]
+Figure = Annotated[
+    Path | None,
+    typer.Option(
+        "--figure",
+        metavar="OUT.png",
+        help="Draw the comparison (PNG or SVG); with several sources a picture each, named"
+        " after it.",
+    ),
+]
+WarpedFolder = Annotated[
+    Path | None,
+    typer.Option("--warped", metavar="DIR", help="Write the sources in the reference's timing."),
+]
 _SUFFIXES = (".png", ".svg")
 
 
+@with_take_options
+@with_options(ComparisonOptions, "comparing")
 def compare(
     reference: Annotated[Path, typer.Argument(metavar="REFERENCE", help="What is compared to.")],
     sources: Annotated[
         list[Path], typer.Argument(metavar="SOURCE...", help="What is compared: files or folders.")
     ],
-    true_speed: Annotated[
-        bool,
-        typer.Option("--true-speed", help="Align and colour at true speed, not at equal lengths."),
-    ] = False,
-    features: Annotated[
-        Features,
-        typer.Option(
-            "--features",
-            help="What a pose is: positions about neck and head in the unit box, positions about"
-            " the hips, or rotations of joints.",
-        ),
-    ] = "box",
-    labels: Annotated[
-        Path | None,
-        typer.Option("--labels", metavar="FILE", help="Segments of the reference (JSON)."),
-    ] = None,
-    figure: Annotated[
-        Path | None,
-        typer.Option(
-            "--figure",
-            metavar="OUT.png",
-            help="Draw the comparison (PNG or SVG); with several sources a picture each, named"
-            " after it.",
-        ),
-    ] = None,
-    warped: Annotated[
-        Path | None,
-        typer.Option(
-            "--warped", metavar="DIR", help="Write the sources in the reference's timing."
-        ),
-    ] = None,
+    labels: LabelsFile = None,
+    figure: Figure = None,
+    warped: WarpedFolder = None,
     json_path: JsonPath = None,
-    fps: Fps = None,
-    unit: Unit = None,
-    up: UpAxis = None,
-    joint_map: JointMap = None,
+    *,
+    reading: TakeOptions,
+    comparing: ComparisonOptions,
 ) -> None:
     """Compare performances with a reference: where each is early, late, different.
 
@@ -70,28 +60,27 @@ def compare(
     """
     from mocapstudio.cli.comparison_job import ComparisonJob, read_recordings
     from mocapstudio.cli.take_files import Workload
-    from mocapstudio.comparison.parameters import ComparisonParameters
+    from mocapstudio.comparison.masking import read_flags
     from mocapstudio.motion.joint_map import read_joint_map
 
+    chosen = comparing.parameters()
     check_writable(json_path)
     _check_figure(figure)
-    chosen = ComparisonParameters(features=features, true_speed=true_speed)
-    work = Workload(TakeOptions(fps, unit, up, joint_map))
-    names = read_joint_map(joint_map) if joint_map else {}
-    job = ComparisonJob(work, reference, chosen, names, labels)
+    work = Workload(reading)
+    names = read_joint_map(reading.joint_map) if reading.joint_map else {}
+    flags = read_flags(comparing.mask) if comparing.mask else {}
+    job = ComparisonJob(work, reference, chosen, names, labels, flags)
     files = work.files(sources)
-    several = len(files) > 1
     written: set[Path] = set()
     for path in files:
         with work.going_on():
             found = read_recordings(work, path)
             for source in found:
                 done = job.run(source, path)
-                alone = not several and len(found) == 1
                 if figure is not None:
-                    _draw(
-                        done, figure if alone else figure.with_stem(f"{figure.stem}-{source.name}")
-                    )
+                    alone = len(files) == len(found) == 1
+                    name = figure.stem if alone else f"{figure.stem}-{source.name}"
+                    _draw(done, figure.with_stem(name))
                 if warped is not None:
                     _write_warped(done, warped, written, inputs=[reference, *files])
     if json_path is None:

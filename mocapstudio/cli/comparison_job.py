@@ -8,12 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mocapstudio import formats
 from mocapstudio.cli import progress
 from mocapstudio.cli.take_files import Workload
 from mocapstudio.comparison import kata, segments
 from mocapstudio.comparison.labels import Labels, labels_of, read_labels
+from mocapstudio.comparison.masking import Flagged, mask_of
 from mocapstudio.comparison.parameters import ComparisonParameters
 from mocapstudio.motion.errors import FileError, MocapError
 
@@ -99,16 +101,26 @@ class ComparisonJob:
         chosen: ComparisonParameters,
         names: Mapping[str, str],
         labels: Path | None,
+        flags: Mapping[str, Sequence[Flagged]],
     ) -> None:
         self.path, self.chosen, self.names = path, chosen, names
         self.reference = read_recordings(work, path)[0]
+        self.flags = flags
+        self.mask = self._mask(self.reference, path)
         self.given = self._given(labels)
         self.labels = self._segments(labels)
         self.done: list[Compared] = []
 
     def run(self, source: Recording, path: Path) -> Compared:
         """Compare one source; its warnings go to standard error."""
-        work = kata.compare(self.reference, source, self.chosen, names=self.names)
+        work = kata.compare(
+            self.reference,
+            source,
+            self.chosen,
+            reference_unreliable=self.mask,
+            source_unreliable=self._mask(source, path),
+            names=self.names,
+        )
         try:
             comparison = progress.run(work, source.name)
         except MocapError as error:
@@ -139,6 +151,15 @@ class ComparisonJob:
             "sources": [one.as_json() for one in self.done],
             "ranking": [str(one.path) for one in ranking],
         }
+
+    def _mask(self, recording: Recording, path: Path) -> NDArray[np.bool_] | None:
+        flagged = self.flags.get(path.stem, ())
+        if not flagged:
+            return None
+        try:
+            return mask_of(recording, flagged, self.chosen.features)
+        except MocapError as error:
+            raise FileError(path, f"is not what was flagged: {error}") from error
 
     def _given(self, path: Path | None) -> list[Labels]:
         return [] if path is None else read_labels(path)

@@ -163,32 +163,45 @@ class TakeOptions:
         )
 
 
-def with_take_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Give a command an option for every field of `TakeOptions`, in place of one parameter.
+Command = Callable[..., None]
+
+
+def with_options(kind: type[Any], name: str) -> Callable[[Command], Command]:
+    """Give a command an option for every field of a dataclass, in place of one parameter.
 
     Parameters
     ----------
-    command
-        A function with a parameter `reading`, to which the `TakeOptions` are passed.
+    kind
+        The dataclass; its annotations are typer's.
+    name
+        The parameter to which an instance is passed.
     """
-    hints = get_type_hints(TakeOptions, include_extras=True)
-    own = inspect.signature(command, eval_str=True)
-    parameters = [p for p in own.parameters.values() if p.name != "reading"]
-    parameters += [
-        inspect.Parameter(
-            field.name,
-            inspect.Parameter.KEYWORD_ONLY,
-            default=field.default,
-            annotation=hints[field.name],
-        )
-        for field in fields(TakeOptions)
-    ]
+    hints = get_type_hints(kind, include_extras=True)
 
-    @wraps(command)
-    def run(**words: Any) -> None:
-        chosen = {field.name: words.pop(field.name) for field in fields(TakeOptions)}
-        command(**words, reading=TakeOptions(**chosen))
+    def expanded(command: Command) -> Command:
+        own = inspect.signature(command, eval_str=True)
+        parameters = [p for p in own.parameters.values() if p.name != name]
+        parameters += [
+            inspect.Parameter(
+                field.name,
+                inspect.Parameter.KEYWORD_ONLY,
+                default=field.default,
+                annotation=hints[field.name],
+            )
+            for field in fields(kind)
+        ]
 
-    run.__signature__ = own.replace(parameters=parameters)  # type: ignore[attr-defined]
-    run.__annotations__ = {p.name: p.annotation for p in parameters}
-    return run
+        @wraps(command)
+        def run(**words: Any) -> None:
+            chosen = {field.name: words.pop(field.name) for field in fields(kind)}
+            command(**words, **{name: kind(**chosen)})
+
+        run.__signature__ = own.replace(parameters=parameters)  # type: ignore[attr-defined]
+        run.__annotations__ = {p.name: p.annotation for p in parameters}
+        return run
+
+    return expanded
+
+
+with_take_options = with_options(TakeOptions, "reading")
+"""Gives a command the options of `TakeOptions`, in place of its parameter `reading`."""

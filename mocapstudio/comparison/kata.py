@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil, floor
 from typing import TypeVar
@@ -24,11 +24,13 @@ from mocapstudio.comparison.pose_alignment import align_poses
 from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.take import Take
-from mocapstudio.similarity.alignment.dtw import Alignment
+from mocapstudio.similarity.alignment.dtw import Alignment, Path
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Result = TypeVar("Result")
+
+_MUCH = 0.1
 
 
 def compare(
@@ -69,17 +71,21 @@ def compare(
     theirs = normalised(other, matched.source, chosen.features)
     yield Progress(0.1, "resampling")
     frames = lengths(one, other, chosen)
-    aligned = yield from _scaled(
-        align_poses(
-            ours.resampled(one.span, frames[0]), theirs.resampled(other.span, frames[1]), chosen
-        ),
-        0.2,
-        0.8,
-    )
+    band = round(chosen.band * (frames[1] - 1) / _seconds(other)) if chosen.band > 0 else None
+    poses = ours.resampled(one.span, frames[0]), theirs.resampled(other.span, frames[1])
+    aligned = yield from _scaled(align_poses(*poses, chosen, band), 0.2, 0.8)
     yield Progress(0.8, "weighing doubts")
     doubted = doubt(aligned, _seconds(one), _seconds(other))
     pair = _Pair(one, other, matched, ours, theirs)
     return _comparison(pair, aligned.alignment, frames, chosen, doubted)
+
+
+def retimed(comparison: Comparison, chosen: ComparisonParameters) -> Comparison:
+    """Classify a known misalignment anew, by another window and tolerance."""
+    shown = comparison.misalignment if chosen.true_speed else comparison.misalignment_relative
+    rate = float(comparison.source_rate)
+    found = timing.slopes(shown, rate, chosen.window, chosen.tolerance)
+    return replace(comparison, timing=found)
 
 
 def performance_of(recording: Take | MarkerTake, unreliable: Mask | None = None) -> Performance:
@@ -93,10 +99,11 @@ def lengths(one: Performance, other: Performance, chosen: ComparisonParameters) 
     """Frames to which both are resampled: equal, or at true speed of equal rate.
 
     The rate is the own one, or every second, third … frame of it, and at least the wanted one;
-    equal lengths are those of the longer.
+    equal lengths are those of the longer. With open ends nobody knows beforehand which parts
+    answer to each other, so neither is stretched.
     """
     rates = [_reduced(p.rate, chosen.rate) for p in (one, other)]
-    if chosen.true_speed:
+    if chosen.true_speed or chosen.open:
         rate = max(rates)
         first, second = (max(2, ceil(_seconds(p) * rate - 1e-6) + 1) for p in (one, other))
         return first, second
@@ -145,7 +152,10 @@ def _comparison(
     begins = float(one.span[0]), float(other.span[0])
     matched = timing.warping_function(path, other.frames, rounded=chosen.rounded)
     gap = timing.misalignment(matched, rates, 1.0, begins)
-    relative = timing.misalignment(matched, rates, _seconds(one) / _seconds(other), begins)
+    tempo, first = (
+        _tempo(path, one, other) if chosen.open else (_seconds(one) / _seconds(other), begins)
+    )
+    relative = timing.misalignment(matched, rates, tempo, first)
     warp = timing.warp_of(gap, rates, begins, one.frames)
     difference, total, weight = _differences(ours, theirs, warp)
     shown = gap if chosen.true_speed else relative
@@ -167,7 +177,13 @@ def _comparison(
         joint_difference=difference,
         pose_difference=total,
         dissimilarity=alignment.mean_cost,
-        warnings=(*one.warnings, *other.warnings, *pair.matched.warnings, *doubted.warnings),
+        warnings=(
+            *one.warnings,
+            *other.warnings,
+            *pair.matched.warnings,
+            *_left_out(weight),
+            *doubted.warnings,
+        ),
         doubt=doubted.disorder,
         unreliable=None if (weight > 0).all() else weight == 0,
         features=chosen.features,
@@ -187,6 +203,19 @@ def _differences(
     scale = np.where(known > 0, weight.shape[1] / np.maximum(known, 1.0), 0.0)
     total = np.sqrt(np.sum(rows**2, axis=1) * scale)
     return rows.astype(np.float32), total.astype(np.float32), weight
+
+
+def _left_out(weight: Array) -> list[str]:
+    """Say how much did not count, where it was much."""
+    share = 1.0 - float(weight.mean())
+    return [f"{share:.0%} of all joints and frames are left out"] if share > _MUCH else []
+
+
+def _tempo(path: Path, one: Performance, other: Performance) -> tuple[float, tuple[float, float]]:
+    """Seconds of the reference a second of the source, and where both begin, on a path."""
+    (first, begin), (last, end) = path[0].tolist(), path[-1].tolist()
+    seconds = max(last - first, 1) / float(one.rate), max(end - begin, 1) / float(other.rate)
+    return seconds[0] / seconds[1], (float(first), float(begin))
 
 
 def _reduced(rate: Fraction, least: float) -> float:

@@ -1,4 +1,4 @@
-"""What a comparison of two performances depends on: engine, form and command line read it."""
+"""What a comparison of two performances depends on: engine, form, file and command line read it."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from mocapstudio.motion.errors import ParameterError
+from mocapstudio.motion.parameters import bounded, check, choice, switch
 
 BOX = "box"
 ROOT = "root"
@@ -19,57 +20,89 @@ ENDS = (CLOSED, REFERENCE, SOURCE)
 
 Side = Literal["reference", "source"]
 
+TIMING_ONLY = frozenset({"tolerance", "window"})
+"""Parameters that only classify a misalignment which is known."""
+
+_SKIPPED = {
+    CLOSED: "together",
+    REFERENCE: "reference may be longer",
+    SOURCE: "source may be longer",
+}
+
 
 @dataclass(frozen=True)
 class ComparisonParameters:
     """How two performances are compared; `PAPER` is paper 4 to the letter.
 
-    Parameters
-    ----------
-    features
-        What a pose is: ``"box"``: positions in the frame of neck and head, scaled into the unit
-        box (the paper's); ``"root"``: positions in the frame of hips and heading, scaled likewise;
-        ``"rotations"``: rotations of the joints.
-    true_speed
-        Compare at true speed instead of stretched to equal lengths.
-    rate
-        Frames a second at least, at which poses are aligned.
-    tolerance
-        Seconds gained or lost within `window` that still count as on time.
-    window
-        Seconds over which gain and loss are looked at.
-    begin, end
-        ``"closed"``, or the side of which frames may be skipped at that end.
-    ignore_style
-        Leave differences of pose that last out of the alignment; the paper does not.
-    rounded
-        Round F to whole frames, as the paper does.
-
     Raises
     ------
     ParameterError
-        If a value is not one of those, or outside its bounds.
+        If a value is not one of the choices or outside its bounds, or a band has open ends.
     """
 
-    features: str = BOX
-    true_speed: bool = False
-    rate: float = 25.0
-    tolerance: float = 0.1
-    window: float = 0.5
-    begin: str = CLOSED
-    end: str = CLOSED
-    ignore_style: bool = True
-    rounded: bool = False
+    features: str = choice(
+        BOX,
+        "Poses",
+        {BOX: "normalised positions", ROOT: "root frame", ROTATIONS: "joint rotations"},
+        "What a pose is: positions in the frame of neck and head, scaled into the unit box (the"
+        " paper's); positions in the frame of hips and heading, scaled likewise; or rotations of"
+        " the joints",
+    )
+    true_speed: bool = switch(
+        False, "True speed", "Compare at true speed instead of stretched to equal lengths"
+    )
+    rate: float = bounded(
+        25.0, "Rate", "Hz", 5, 240, "Frames a second at least, at which poses are aligned"
+    )
+    tolerance: float = bounded(
+        0.1, "Tolerance", "s", 0, 10, "Seconds gained or lost within the window that are on time"
+    )
+    window: float = bounded(
+        0.5, "Window", "s", 0.02, 10, "Seconds over which gain and loss are looked at"
+    )
+    begin: str = choice(
+        CLOSED,
+        "Beginning",
+        _SKIPPED,
+        "Whether the performances begin together, or frames of one may be left out",
+    )
+    end: str = choice(
+        CLOSED,
+        "End",
+        _SKIPPED,
+        "Whether the performances end together, or frames of one may be left out",
+    )
+    band: float = bounded(
+        0.0,
+        "Band",
+        "s",
+        0,
+        600,
+        "Seconds of the source that the path may be off the straight line from the first pair of"
+        " frames to the last; 0 for any",
+    )
+    masked: bool = switch(
+        False,
+        "Leave flagged out",
+        "Leave joints out where they are flagged, so that a bad capture is not read as a bad"
+        " performance",
+    )
+    ignore_style: bool = switch(
+        True,
+        "Ignore style",
+        "Leave differences of pose that last out of the alignment; the paper does not",
+    )
+    rounded: bool = switch(False, "Whole frames", "Match whole frames only, as the paper does")
 
     def __post_init__(self) -> None:
-        if self.features not in FEATURES:
-            raise ParameterError(f"features must be one of {', '.join(FEATURES)}")
-        for name in ("begin", "end"):
-            if getattr(self, name) not in ENDS:
-                raise ParameterError(f"{name} must be one of {', '.join(ENDS)}")
-        for name, low, high in (("rate", 5, 240), ("tolerance", 0, 10), ("window", 0.02, 10)):
-            if not low <= getattr(self, name) <= high:
-                raise ParameterError(f"{name} must lie in {low}..{high}")
+        check(self)
+        if self.band > 0 and self.open:
+            raise ParameterError("a band goes from end to end: begin and end must be closed")
+
+    @property
+    def open(self) -> bool:
+        """Whether frames of one performance may be left out at an end."""
+        return (self.begin, self.end) != (CLOSED, CLOSED)
 
     @property
     def open_begin(self) -> Side | None:

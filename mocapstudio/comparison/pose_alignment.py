@@ -12,7 +12,13 @@ from mocapstudio.comparison.normalisation import Poses
 from mocapstudio.comparison.parameters import ComparisonParameters
 from mocapstudio.motion.progress import Progress
 from mocapstudio.similarity.alignment.costs import Costs, PoseDistances, ReliableDistances
-from mocapstudio.similarity.alignment.dtw import Alignment, Ends, Path, aligning
+from mocapstudio.similarity.alignment.dtw import (
+    Alignment,
+    Ends,
+    Path,
+    align_in_band,
+    aligning,
+)
 from mocapstudio.similarity.alignment.frugal import aligning_frugally
 
 Array = NDArray[np.float64]
@@ -38,7 +44,7 @@ class PoseAlignment:
 
 
 def align_poses(
-    ours: Poses, theirs: Poses, chosen: ComparisonParameters
+    ours: Poses, theirs: Poses, chosen: ComparisonParameters, band: int | None = None
 ) -> Generator[Progress, None, PoseAlignment]:
     """Align poses of a source with those of a reference.
 
@@ -46,15 +52,20 @@ def align_poses(
     drowns those that are: distances hardly vary, and the path keeps to the diagonal. So the
     alignment is first made between what departs from each take's mean pose, then once more with
     the median difference of the poses so matched taken out.
+
+    Parameters
+    ----------
+    band
+        Source frames that the path may be off the straight line, None for any.
     """
     plain = costs_of(ours, theirs)
     if not chosen.ignore_style:
-        alignment = yield from _aligning(plain, chosen)
+        alignment = yield from _aligning(plain, chosen, band)
         return PoseAlignment(alignment, plain)
     offset = _mean(ours) - _mean(theirs)
-    first = yield from _aligning(costs_of(ours, _moved(theirs, offset)), chosen)
+    first = yield from _aligning(costs_of(ours, _moved(theirs, offset)), chosen, band)
     costs = costs_of(ours, _moved(theirs, _lasting(ours, theirs, first.path)))
-    second = yield from _aligning(costs, chosen)
+    second = yield from _aligning(costs, chosen, band)
     return PoseAlignment(Alignment(second.path, plain.pairs(second.path)), costs)
 
 
@@ -66,7 +77,12 @@ def costs_of(ours: Poses, theirs: Poses) -> Costs:
     return ReliableDistances(one, other, ours.weight, theirs.weight)
 
 
-def _aligning(costs: Costs, chosen: ComparisonParameters) -> Generator[Progress, None, Alignment]:
+def _aligning(
+    costs: Costs, chosen: ComparisonParameters, band: int | None
+) -> Generator[Progress, None, Alignment]:
+    if band is not None:
+        yield Progress(0.0, "aligning")
+        return align_in_band(costs, band)
     ends = Ends(chosen.open_begin, chosen.open_end)
     if costs.shape[0] * costs.shape[1] > _MOST_CELLS:
         return (yield from aligning_frugally(costs, ends))

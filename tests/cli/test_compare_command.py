@@ -181,3 +181,27 @@ def test_labels_of_another_take_are_refused(command, kata, tmp_path: Path) -> No
     done = command("compare", kata["reference"], kata["twin"], "--labels", labels)
     assert done.returncode == 2
     assert "holds no labels of teacher" in done.stderr
+
+
+def test_open_ends_bands_and_masks_are_options(mocapstudio, kata, tmp_path: Path) -> None:
+    flag = {"joint": "LeftArm", "joints": ["LeftArm"], "start": 0, "end": 9}
+    mask = tmp_path / "flags.json"
+    mask.write_text(json.dumps({"takes": [{"path": "twin.bvh", "flags": [flag]}]}))
+    arm = ("--mask", mask, "--band", "1.5", "--tolerance", "0.2", "--features", "rotations")
+    found = compared(mocapstudio, kata["reference"], kata["twin"], *arm)
+    assert found["sources"][0]["dissimilarity"] < 1e-5
+    part = compared(mocapstudio, kata["reference"], kata["twin"], "--subsequence", "reference")
+    assert part["sources"][0]["path_pairs"][0] == [0, 0]
+
+
+def test_options_that_contradict_each_other_exit_2(command, kata, tmp_path: Path) -> None:
+    for words, what in (
+        (("--subsequence", "source", "--open-end", "source"), "--subsequence"),
+        (("--open-end", "source", "--band", "2"), "band"),
+        (("--mask", tmp_path / "none.json"), "none.json"),
+    ):
+        done = command("compare", kata["reference"], kata["twin"], *words)
+        assert done.returncode == 2, done.stdout
+        assert done.stderr.startswith("error: ")
+        assert what in done.stderr
+        assert len(done.stderr.splitlines()) == 1

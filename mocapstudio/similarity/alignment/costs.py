@@ -27,6 +27,9 @@ class Costs(Protocol):
     def fill(self, start: int, end: int, out: F32) -> None:
         """Write the costs of reference frames [start, end) with all source frames into `out`."""
 
+    def fill_within(self, low: NDArray[np.int32], out: F32) -> None:
+        """Write the costs of a band (R, W) whose rows begin at the source frames `low` (R,)."""
+
     def pairs(self, path: NDArray[np.int32]) -> F32:
         """(P,) costs of the pairs of a path (P, 2)."""
 
@@ -108,6 +111,10 @@ class KnownCosts:
         """Write the costs of reference frames [start, end) into `out` (end - start, S)."""
         out[:] = self.matrix[start:end]
 
+    def fill_within(self, low: NDArray[np.int32], out: F32) -> None:
+        """Write the costs of a band (R, W) whose rows begin at the source frames `low` (R,)."""
+        _cut_band(self, low, out)
+
     def pairs(self, path: NDArray[np.int32]) -> F32:
         """(P,) costs of the pairs of a path (P, 2)."""
         return np.asarray(self.matrix[path[:, 0], path[:, 1]])
@@ -169,6 +176,10 @@ class ReliableDistances:
         total = self._squares[0][rows] @ b.T + a[rows] @ self._squares[1].T - 2 * cross
         out[:] = self._scaled(total, a[rows] @ b.T)
 
+    def fill_within(self, low: NDArray[np.int32], out: F32) -> None:
+        """Write the costs of a band (R, W) whose rows begin at the source frames `low` (R,)."""
+        _cut_band(self, low, out)
+
     def pairs(self, path: NDArray[np.int32]) -> F32:
         """(P,) costs of the pairs of a path (P, 2)."""
         i, j = path.T
@@ -188,6 +199,20 @@ class ReliableDistances:
         if not shared.all():
             cost[~shared] = cost[shared].mean() if shared.any() else 0.0
         return np.asarray(cost, np.float32)
+
+
+def _cut_band(costs: Costs, low: NDArray[np.int32], out: F32) -> None:
+    """Fill a band (R, W) from whole rows, a few at a time."""
+    columns = costs.shape[1]
+    block = np.empty((min(_AT_LEAST, len(out)), columns), np.float32)
+    for start in range(0, len(out), len(block)):
+        rows = block[: len(out) - start]
+        costs.fill(start, start + len(rows), rows)
+        for row, first, into in zip(rows, low[start:].tolist(), out[start:], strict=False):
+            begin, end = max(first, 0), min(first + out.shape[1], columns)
+            into[:] = np.inf
+            if begin < end:
+                into[begin - first : end - first] = row[begin:end]
 
 
 def _check(reference: NDArray[np.floating], source: NDArray[np.floating]) -> None:

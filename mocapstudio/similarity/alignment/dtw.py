@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from mocapstudio.motion.errors import ParameterError
 from mocapstudio.motion.progress import Progress, run
 from mocapstudio.similarity.alignment import kernels
-from mocapstudio.similarity.alignment.costs import Costs, PoseDistances
+from mocapstudio.similarity.alignment.costs import Costs
 
 F32 = NDArray[np.float32]
 Path = NDArray[np.int32]
@@ -126,7 +126,7 @@ def traced(accumulated: F32, ends: Ends = CLOSED) -> Path:
     return path[first:].copy()
 
 
-def align_in_band(costs: PoseDistances, band: int, ends: Ends = CLOSED) -> Alignment:
+def align_in_band(costs: Costs, band: int, ends: Ends = CLOSED) -> Alignment:
     """Find the cheapest path that keeps to a Sakoe-Chiba band; memory grows with R x band.
 
     Parameters
