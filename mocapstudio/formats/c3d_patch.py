@@ -30,9 +30,10 @@ _INTEGER = 2
 def patched(take: MarkerTake, declared: Sequence[Declared], *, trim: bool) -> Iterator[bytes]:
     """Bytes of the source with the changed samples of `take` in their cells.
 
-    A changed sample has no residual and no camera, by which the format marks what was not
-    measured; a sample that was taken away is marked as invalid. All other bytes are the source's
-    own: points that are no markers, analogue samples, parameters.
+    A changed sample has no camera, and no residual either unless the take tells it from those that
+    were filled: by that the format marks what was not measured. A sample that was taken away is
+    marked as invalid. All other bytes are the source's own: points that are no markers, analogue
+    samples, parameters.
 
     Parameters
     ----------
@@ -88,16 +89,21 @@ def _put(
         frames = np.flatnonzero(changed[:, m])
         place = take.positions[frames, m]
         xyz = rot.rotate(rot.conjugate(source.to_inside), place) / record.units[m]
-        cells = _cells(xyz, layout, f"{take.name}: marker {take.labels[m]}")
+        measured = None if take.filled is None else ~take.filled[frames, m]
+        cells = _cells(xyz, measured, layout, f"{take.name}: marker {take.labels[m]}")
         at = int(record.points[m]) * 4 * layout.width
         rows[frames, at : at + 4 * layout.width] = cells
 
 
-def _cells(xyz: Array, layout: Layout, where: str) -> NDArray[np.uint8]:
+def _cells(
+    xyz: Array, measured: NDArray[np.bool_] | None, layout: Layout, where: str
+) -> NDArray[np.uint8]:
     """(N, bytes) of samples in the file's units and axes."""
     gone = np.asarray(np.isnan(xyz).any(axis=1))
     four = np.zeros((len(xyz), 4))
     four[:, :3] = xyz
+    if measured is not None:
+        four[measured, 3] = 1.0
     four[gone] = (0.0, 0.0, 0.0, -1.0)
     if layout.real:
         raw = layout.numbers.floats_bytes(four.astype(np.float32))

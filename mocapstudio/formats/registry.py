@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from mocapstudio.formats.amc_read import looks_like_amc, read_amc
@@ -148,8 +148,15 @@ def read_any(
         # A ValueError is a null byte in the name.
         raise FileError(path, (getattr(bad, "strerror", None) or str(bad)).lower()) from bad
     reader = _reader_of(path, data[:_SNIFFED])
-    found, report = reader(path, data, options or ReadOptions())
-    return list(found), report
+    options = options or ReadOptions()
+    found, report = reader(path, data, options)
+    return [_with_options(take, options) for take in found], report
+
+
+def _with_options(take: Recording, options: ReadOptions) -> Recording:
+    if take.source is None:
+        return take
+    return replace(take, source=replace(take.source, options=options))
 
 
 def read(path: Path | str, options: ReadOptions | None = None) -> tuple[list[Take], ImportReport]:

@@ -36,6 +36,8 @@ class Source:
     record
         The format's own record of the text, channel order and so on; only the format's modules
         look into it.
+    options
+        How the reader was told to read the file, as formats know it; None where nobody said.
     """
 
     path: Path
@@ -45,6 +47,7 @@ class Source:
     to_inside: NDArray[np.float64] = field(default_factory=lambda: np.array([0.0, 0.0, 0.0, 1.0]))
     performer: int = 0
     record: Any = None
+    options: Any = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,14 +18,15 @@ from mocapstudio.review.analyses import Analyses
 from mocapstudio.review.announcer import Announcer
 from mocapstudio.review.decisions import Stamp
 from mocapstudio.review.history import History, same
+from mocapstudio.review.marker_replay import MarkerResults
 from mocapstudio.review.model import QueueItem, Selection, Sitting
 from mocapstudio.review.queue import Queue
 from mocapstudio.review.recorder import Nobody, Recorder
-from mocapstudio.review.references import TakeRecord
 from mocapstudio.review.replay import Results
 from mocapstudio.review.state import DocumentState, differing
+from mocapstudio.review.take_record import TakeRecord
 
-_LASTING = frozenset({"active", "scene", "context", "parameters"})
+_LASTING = frozenset({"active", "scene", "markers", "context", "parameters"})
 
 
 class Core:
@@ -52,6 +53,7 @@ class Core:
         self._group: tuple[str, str, History] | None = None
         self._analyses = Analyses()
         self._sources, self._results, self._uncorrected = Results(), Results(), Results()
+        self._marker_results, self._unfilled = MarkerResults(), MarkerResults()
         self._context: tuple[Take, ...] = ()
         self._queue_of: tuple[str, object, object, tuple[QueueItem, ...]] = ("", (), (), ())
         self._saved = lasting(self._state)
@@ -215,6 +217,15 @@ class Core:
         except KeyError:
             what = f"no performer {performer}" if performer else "no take is open"
             raise MocapError(what) from None
+
+    def _free_id(self, name: str) -> str:
+        """Return a name that no performer has, by joints or by markers, found or not."""
+        state = self._state
+        taken = {one.id for one in state.everyone} | {one.id for one in self.absent}
+        free, n = name, 2
+        while free in taken:
+            free, n = f"{name}#{n}", n + 1
+        return free
 
     def _trim(self, performer: str) -> tuple[int, int] | None:
         take = self._take(performer)

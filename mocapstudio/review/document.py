@@ -15,6 +15,8 @@ from mocapstudio.review.contacts import Contacting
 from mocapstudio.review.core import lasting
 from mocapstudio.review.deciding import Deciding
 from mocapstudio.review.history import History
+from mocapstudio.review.marker_model import MarkerPerformer
+from mocapstudio.review.marking import Marking
 from mocapstudio.review.model import Scene, Sitting, Verdict
 from mocapstudio.review.recorder import Recovered
 from mocapstudio.review.rows import rows_of, union
@@ -24,7 +26,7 @@ from mocapstudio.review.viewing import Viewing
 __all__ = ["Document", "DocumentState", "SessionProblem"]
 
 
-class Document(Viewing, Deciding, Contacting):
+class Document(Viewing, Deciding, Contacting, Marking):
     """State of a sitting, the intents that change it, and the listeners that are told.
 
     Intents act on the active performer unless they name one. An intent that cannot be done raises
@@ -129,6 +131,8 @@ class Document(Viewing, Deciding, Contacting):
         return cast("Sitting", self._saved["sitting"])
 
     @property
-    def saved_scene(self) -> Scene:
-        """The scene that stands in the session file; an empty one without a file."""
-        return cast("Scene", self._saved["scene"])
+    def saved_ids(self) -> frozenset[str]:
+        """Ids of all whose takes stand in the session file; none without a file."""
+        scene = cast("Scene", self._saved["scene"])
+        markers = cast("tuple[MarkerPerformer, ...]", self._saved["markers"])
+        return frozenset({one.id for one in scene.performers} | {one.id for one in markers})

@@ -36,16 +36,17 @@ def export(document: Document, performer: str, path: Path | str, trim: bool = Fa
         If there is no such performer, or the format cannot hold the motion.
     """
     path = Path(path)
-    inputs = _inputs(document)
+    inputs = inputs_of(document)
     result, declared = document.result(performer), document.declared(performer)
     formats.write(result, path, declared=declared, options=WriteOptions(trim=trim), inputs=inputs)
     text = json.dumps(provenance(document, performer, path), indent=1, ensure_ascii=False)
     write_whole(provenance_path(path), [text.encode(), b"\n"], inputs=inputs)
 
 
-def _inputs(document: Document) -> list[Path]:
+def inputs_of(document: Document) -> list[Path]:
+    """Return the files that an export must not write over: takes, context, session."""
     state = document.state
-    takes = [p.take for p in state.scene.performers]
+    takes: list[formats.Recording] = [one.take for one in state.everyone]
     for analysis in state.analyses.values():
         takes += analysis.context
     takes += document.context_takes

@@ -92,6 +92,7 @@ class History:
                 tuple(t for t in sitting.trims if t[0] != performer),
                 tuple(c for c in sitting.contacts if c.performer != performer),
                 tuple(p for p in sitting.points if p.performer != performer),
+                tuple(e for e in sitting.marker_edits if e.performer != performer),
             )
 
         present = without(self.present)

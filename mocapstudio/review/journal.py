@@ -22,12 +22,14 @@ from mocapstudio.review import journal_records as records
 from mocapstudio.review.core import new_id
 from mocapstudio.review.document import Document
 from mocapstudio.review.lock import Lock, holder, is_open_here, lock_path
+from mocapstudio.review.marker_model import MarkerPerformer
 from mocapstudio.review.model import Performer, Sitting
 from mocapstudio.review.opening import Opening, journal_path
-from mocapstudio.review.references import Relocate, absolute, refer
+from mocapstudio.review.records import Arrays
+from mocapstudio.review.references import Relocate
 from mocapstudio.review.session_record import FORMAT, VERSION, SessionRecord
 from mocapstudio.review.state import DocumentState
-from mocapstudio.review.wire import Arrays
+from mocapstudio.review.take_record import absolute, refer
 
 SYNC_SECONDS = 1.0
 _SUFFIX = ".journal"
@@ -121,7 +123,7 @@ class Journal:
             self._begin(document)
         document.recorder = self
 
-    def opened(self, performer: Performer) -> None:
+    def opened(self, performer: Performer | MarkerPerformer) -> None:
         """Write down that a take was opened."""
         arrays = Arrays()
         take = refer(performer, None, arrays)
@@ -217,8 +219,8 @@ class Journal:
         """Write the head, and what the document holds beyond the session file."""
         state = document.state
         self._write(records.Head(records.FORMAT, records.VERSION, document.save))
-        saved = {p.id for p in document.saved_scene.performers} if state.path else set()
-        for performer in state.scene.performers:
+        saved = document.saved_ids if state.path else frozenset[str]()
+        for performer in state.everyone:
             if performer.id not in saved:
                 self.opened(performer)
         if document.saved_sitting is not state.sitting:

@@ -21,26 +21,29 @@ import msgspec
 from mocapstudio.motion.errors import FileError
 from mocapstudio.review.contact_wire import ContactRecord, PointsRecord
 from mocapstudio.review.history import History, Step
+from mocapstudio.review.marker_wire import MarkerEditRecord
 from mocapstudio.review.model import Sitting
-from mocapstudio.review.references import TakeRecord
-from mocapstudio.review.wire import (
+from mocapstudio.review.records import (
     Arrays,
-    DecisionRecord,
-    EditRecord,
     MalformedError,
-    ProtectedRecord,
     Record,
-    SittingRecord,
-    TrimRecord,
     arrays_from_bytes,
     arrays_to_bytes,
+)
+from mocapstudio.review.take_record import TakeRecord
+from mocapstudio.review.wire import (
+    DecisionRecord,
+    EditRecord,
+    ProtectedRecord,
+    SittingRecord,
+    TrimRecord,
     pack,
     unpack,
 )
 
 FORMAT = "mocapstudio journal"
 VERSION = 1
-_PARTS = ("edits", "decisions", "protected", "trims", "contacts", "points")
+_PARTS = ("edits", "decisions", "protected", "trims", "contacts", "points", "marker_edits")
 
 Item = TypeVar("Item")
 
@@ -62,6 +65,7 @@ class Delta(Record, frozen=True):
     trims: Splice[TrimRecord] = Splice()
     contacts: Splice[ContactRecord] = Splice()
     points: Splice[PointsRecord] = Splice()
+    marker_edits: Splice[MarkerEditRecord] = Splice()
     samples: str = ""
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import msgspec
 
 from mocapstudio.motion.errors import FileError, MocapError
-from mocapstudio.review.wire import Record
+from mocapstudio.review.records import Record
 
 
 class Holder(Record, frozen=True):

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from mocapstudio.cleaning.contacts.model import Contact, ContactPoint
 from mocapstudio.cleaning.model import Flag, Neighbour
 from mocapstudio.motion.take import Take
+from mocapstudio.review.marker_model import MarkerEdit
 
 
 class Verdict(StrEnum):
@@ -189,3 +190,4 @@ class Sitting:
     trims: tuple[tuple[str, tuple[int, int]], ...] = field(default=())
     contacts: tuple[OwnContact, ...] = ()
     points: tuple[OwnPoints, ...] = ()
+    marker_edits: tuple[MarkerEdit, ...] = ()

@@ -9,6 +9,7 @@ from typing import Any
 
 from mocapstudio.cleaning.parameters import DetectionParameters
 from mocapstudio.motion.errors import FileError, ParameterError
+from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.review.document import Document
 from mocapstudio.review.history import History
 from mocapstudio.review.journal_records import (
@@ -21,12 +22,15 @@ from mocapstudio.review.journal_records import (
     advanced,
     from_text,
 )
+from mocapstudio.review.marker_model import MarkerPerformer
 from mocapstudio.review.model import Performer, Scene, Selection
 from mocapstudio.review.recorder import Recovered
-from mocapstudio.review.references import Finder, Relocate, TakeRecord, absolute
+from mocapstudio.review.records import Arrays, MalformedError
+from mocapstudio.review.references import Finder, Relocate
 from mocapstudio.review.session_record import SessionRecord
 from mocapstudio.review.state import SessionProblem
-from mocapstudio.review.wire import Arrays, MalformedError, unpack, unpack_flag
+from mocapstudio.review.take_record import TakeRecord, absolute
+from mocapstudio.review.wire import unpack, unpack_flag
 
 
 def journal_path(path: Path) -> Path:
@@ -109,13 +113,17 @@ class Opening:
     def document(self, author: str | None = None) -> Document:
         """Find the takes and make the document."""
         document = Document(author)
-        performers, absent = [], []
+        performers: list[Performer] = []
+        markers: list[MarkerPerformer] = []
+        absent: list[TakeRecord] = []
         for record in self._takes.values():
             performer = self._performer(record)
-            if performer is None:
-                absent.append(record)
-            else:
+            if isinstance(performer, MarkerPerformer):
+                markers.append(performer)
+            elif performer is not None:
                 performers.append(performer)
+            else:
+                absent.append(record)
         document.absent = tuple(absent)
         scene = Scene(tuple(performers))
         document.restore(
@@ -125,6 +133,7 @@ class Opening:
             self._record.choices,
             context=self._context(),
             parameters=self._parameters(),
+            markers=tuple(markers),
             **self._view(scene),
         )
         if self._path is not None:
@@ -133,7 +142,7 @@ class Opening:
         document.set_problems(self._problems)
         return document
 
-    def _performer(self, record: TakeRecord) -> Performer | None:
+    def _performer(self, record: TakeRecord) -> Performer | MarkerPerformer | None:
         try:
             found = self._finder.find(record, self._arrays)
         except MalformedError as error:
@@ -142,6 +151,8 @@ class Opening:
             self.tell(Path(record.absolute or record.name), found.problem, record.id)
         if found.take is None:
             return None
+        if isinstance(found.take, MarkerTake):
+            return MarkerPerformer(record.id, found.take)
         places = {} if self._settled is None else self._settled.places
         offset, partner = places.get(record.id, (record.offset, record.partner))
         return Performer(record.id, found.take, offset, partner)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from mocapstudio import __version__
+from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.motion.take import Take
 from mocapstudio.review.document import Document
 from mocapstudio.review.model import Decision, Edit, Protected, Verdict
@@ -49,13 +50,13 @@ def provenance(document: Document, performer: str, output: Path) -> dict[str, An
         "program": "mocapstudio",
         "version": __version__,
         "written": utc_now(),
-        "take": _take(take) | {"fps": float(take.rate), "frames": take.frames, "trim": take.trim},
+        "take": origin(take) | {"fps": float(take.rate), "frames": take.frames, "trim": take.trim},
         "output": {"path": str(output), "sha256": hashlib.sha256(output.read_bytes()).hexdigest()},
         "session": None if state.path is None else str(state.path),
         "parameters": dataclasses.asdict(parameters),
         "context": {
             "paths": [str(path) for path in state.context],
-            "takes": [_take(one) for one in context],
+            "takes": [origin(one) for one in context],
         },
         "verdicts": verdict_counts(document, performer),
         "changes": changes(e for e in sitting.edits if e.performer == performer),
@@ -69,7 +70,8 @@ def utc_now() -> str:
     return datetime.now(UTC).isoformat(timespec="seconds").replace("+00:00", "Z")
 
 
-def _take(take: Take) -> dict[str, Any]:
+def origin(take: Take | MarkerTake) -> dict[str, Any]:
+    """Return name, path and SHA-256 of a take's file, as JSON knows them."""
     source = take.source
     return {
         "name": take.name,

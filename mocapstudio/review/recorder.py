@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
+from mocapstudio.review.marker_model import MarkerPerformer
 from mocapstudio.review.model import Performer, Sitting
 from mocapstudio.review.state import DocumentState
 
@@ -24,7 +25,7 @@ class Recovered:
 class Recorder(Protocol):
     """Writes down what the document does, as it does it; see `review.journal`."""
 
-    def opened(self, performer: Performer) -> None:
+    def opened(self, performer: Performer | MarkerPerformer) -> None:
         """A take was opened."""
 
     def closed(self, performer: str) -> None:
@@ -49,7 +50,7 @@ class Recorder(Protocol):
 class Nobody:
     """A recorder that writes nothing down."""
 
-    def opened(self, performer: Performer) -> None:
+    def opened(self, performer: Performer | MarkerPerformer) -> None:
         """Ignore it."""
 
     def closed(self, performer: str) -> None:

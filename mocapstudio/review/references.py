@@ -1,121 +1,32 @@
-"""Takes as a session refers to them, and how they are found again."""
+"""How the takes of a session are found again."""
 
 from __future__ import annotations
 
 import hashlib
-import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, Literal, cast
 
-import numpy as np
 from numpy.typing import NDArray
 
-from mocapstudio.formats import ReadOptions, read
-from mocapstudio.motion import rotations as rot
+from mocapstudio.formats import ReadOptions, Recording, read_any
 from mocapstudio.motion.errors import FileError, MocapError
-from mocapstudio.motion.skeleton import Skeleton
-from mocapstudio.motion.take import Source, Take
-from mocapstudio.review.model import Performer
-from mocapstudio.review.wire import Arrays, MalformedError, Record
+from mocapstudio.motion.markers import MarkerTake
+from mocapstudio.motion.take import Take
+from mocapstudio.review.reading_wire import unpack_reading
+from mocapstudio.review.take_record import TakeRecord, absolute, held, mean_w, up_axis
 
 Relocate = Callable[[Path], Path | None]
-
-
-class TakeRecord(Record, frozen=True):
-    """A performer: where its take lies, how it was read, and what it must hold.
-
-    A take without a file (`absolute` is None) lies in arrays ``takes/ID/…``.
-    """
-
-    id: str
-    name: str
-    frames: int
-    rate: str
-    joints: tuple[str, ...]
-    offset: float = 0.0
-    partner: bool = False
-    relative: str | None = None
-    absolute: str | None = None
-    digest: str = ""
-    performer: int = 0
-    unit: float = 1.0
-    up: str | None = None
-    mean_w: float = 0.0
-    translated: tuple[int, ...] = (0,)
-    first_frame: int = 0
-    timecode: str | None = None
-    trim: tuple[int, int] | None = None
 
 
 @dataclass(frozen=True)
 class Found:
     """A take that was looked for: None where it is missing or is another one by now."""
 
-    take: Take | None
+    take: Recording | None
     problem: str | None = None
-
-
-def refer(performer: Performer, folder: Path | None, arrays: Arrays) -> TakeRecord:
-    """Make a record of a performer; a take that has no file is put into `arrays`.
-
-    Parameters
-    ----------
-    folder
-        Where the session file lies; paths are kept relative to it.
-    """
-    take, source = performer.take, performer.take.source
-    record = TakeRecord(
-        performer.id,
-        take.name,
-        take.frames,
-        str(take.rate),
-        take.skeleton.names,
-        performer.offset,
-        performer.partner,
-        mean_w=_mean_w(take),
-        translated=take.translated,
-        first_frame=take.first_frame,
-        timecode=take.timecode,
-        trim=take.trim,
-    )
-    if source is None:
-        arrays |= _take_arrays(performer.id, take)
-        return record
-    path = absolute(source.path)
-    return _changed(
-        record,
-        relative=relative_to(path, folder),
-        absolute=str(path),
-        digest=source.digest,
-        performer=source.performer,
-        unit=source.unit,
-        up=_up(source),
-    )
-
-
-def moved(record: TakeRecord, folder: Path | None) -> TakeRecord:
-    """Return the record with its path relative to another folder."""
-    if record.absolute is None:
-        return record
-    return _changed(record, relative=relative_to(Path(record.absolute), folder))
-
-
-def absolute(path: Path | str) -> Path:
-    """Absolute path without ``..``; links are kept as the user named them."""
-    return Path(os.path.abspath(path))  # noqa: PTH100
-
-
-def relative_to(path: Path, folder: Path | None) -> str | None:
-    """Path from a folder, with slashes; None without a folder, or on another drive."""
-    if folder is None:
-        return None
-    try:
-        return Path(os.path.relpath(path, absolute(folder))).as_posix()
-    except ValueError:
-        return None
 
 
 class Finder:
@@ -145,12 +56,12 @@ class Finder:
             If a take that the session holds itself is damaged.
         """
         if record.absolute is None:
-            return Found(_take_from(record, arrays))
+            return Found(held(record, arrays))
         path = self.path(record.relative, record.absolute, record.digest)
         if path is None:
             return Found(None, f"{record.absolute} is missing")
         try:
-            take = _read_alike(path, record)
+            take = self._read(path, record)
         except MocapError as error:
             return Found(None, str(error))
         if take is None:
@@ -158,6 +69,15 @@ class Finder:
         changed = _digest_of(take) != record.digest
         note = f"{path} has changed since the session was saved" if changed else None
         return Found(take, note)
+
+    def _read(self, path: Path, record: TakeRecord) -> Recording | None:
+        """Read a take as it was read when the session was saved; None where it does not fit."""
+        if record.reading is None:
+            return _read_alike(path, record)
+        take = _pick(path, record, unpack_reading(record.reading, self.path))
+        if take is None or take.frames != record.frames:
+            return None
+        return _named(take, record)
 
     def path(self, relative: str | None, before: str, digest: str = "") -> Path | None:
         """Where a file lies now: the first place whose content fits, else the first there is."""
@@ -200,8 +120,8 @@ def _digest(path: Path) -> str:
         return ""
 
 
-def _read_alike(path: Path, record: TakeRecord) -> Take | None:
-    """Read a take as it was read when the session was saved; None where it does not fit."""
+def _read_alike(path: Path, record: TakeRecord) -> Recording | None:
+    """Read a take of a session that does not say how it was read."""
     try:
         take = _pick(path, record, ReadOptions())
     except FileError:
@@ -209,7 +129,7 @@ def _read_alike(path: Path, record: TakeRecord) -> Take | None:
         take = _pick(path, record, ReadOptions(lenient=True))
     if take is None or take.source is None:
         return None
-    rate, up = Fraction(record.rate), _up(take.source)
+    rate, up = Fraction(record.rate), up_axis(take.source)
     wanted = ReadOptions(
         fps=None if take.rate == rate else rate,
         unit=None if take.source.unit == record.unit else record.unit,
@@ -226,15 +146,23 @@ def _read_alike(path: Path, record: TakeRecord) -> Take | None:
     return _named(take, record)
 
 
-def _pick(path: Path, record: TakeRecord, options: ReadOptions) -> Take | None:
-    takes, _ = read(path, options)
+def _pick(path: Path, record: TakeRecord, options: ReadOptions) -> Recording | None:
+    takes, _ = read_any(path, options)
+    kind = Take if record.labels is None else MarkerTake
     for take in takes:
-        if take.source is not None and take.source.performer == record.performer:
+        if (
+            isinstance(take, kind)
+            and take.source is not None
+            and take.source.performer == record.performer
+        ):
             return take
     return None
 
 
-def _named(take: Take, record: TakeRecord) -> Take | None:
+def _named(take: Recording, record: TakeRecord) -> Recording | None:
+    if isinstance(take, MarkerTake):
+        fits = take.labels == record.labels
+        return replace(take, name=record.name, trim=record.trim) if fits else None
     names = take.skeleton.names
     if names != record.joints:
         if len(names) != len(record.joints) or _digest_of(take) != record.digest:
@@ -244,68 +172,9 @@ def _named(take: Take, record: TakeRecord) -> Take | None:
     return replace(take, name=record.name, trim=record.trim)
 
 
-def _digest_of(take: Take) -> str:
+def _digest_of(take: Recording) -> str:
     return take.source.digest if take.source is not None else ""
 
 
-def _mean_w(take: Take) -> float:
-    """Tell takes apart that were read with angles in another unit."""
-    return float(np.nan_to_num(np.abs(take.rotations[..., 3])).mean())
-
-
-def _same_motion(take: Take, record: TakeRecord) -> bool:
-    return abs(_mean_w(take) - record.mean_w) < 1e-6
-
-
-def _up(source: Source) -> str | None:
-    """Axis of the file that became our Y; None where it is none of the three."""
-    turned = rot.rotate(np.broadcast_to(source.to_inside, (3, 4)), np.eye(3))
-    axis = int(turned[:, 1].argmax())
-    return "xyz"[axis] if turned[axis, 1] > 1 - 1e-6 else None
-
-
-def _take_arrays(performer: str, take: Take) -> Arrays:
-    skeleton = take.skeleton
-    arrays = {
-        "parents": skeleton.parents,
-        "offsets": skeleton.offsets,
-        "end_parents": skeleton.end_parents,
-        "end_offsets": skeleton.end_offsets,
-        "rotations": take.rotations,
-        "translations": take.translations,
-    }
-    return {f"takes/{performer}/{name}": array for name, array in arrays.items()}
-
-
-def _take_from(record: TakeRecord, arrays: Mapping[str, NDArray[Any]]) -> Take:
-    try:
-        part = {
-            name: arrays[f"takes/{record.id}/{name}"]
-            for name in (
-                "parents",
-                "offsets",
-                "end_parents",
-                "end_offsets",
-                "rotations",
-                "translations",
-            )
-        }
-        rotations, translations = part.pop("rotations"), part.pop("translations")
-        return Take(
-            record.name,
-            Skeleton(record.joints, **part),
-            rotations,
-            translations,
-            Fraction(record.rate),
-            record.translated,
-            record.first_frame,
-            record.timecode,
-            record.trim,
-        )
-    except (KeyError, ValueError, IndexError, MocapError) as error:
-        raise MalformedError(f"the take {record.name} inside is damaged ({error})") from error
-
-
-def _changed(record: TakeRecord, **changes: Any) -> TakeRecord:
-    values = {name: getattr(record, name) for name in record.__struct_fields__}
-    return TakeRecord(**(values | changes))
+def _same_motion(take: Recording, record: TakeRecord) -> bool:
+    return isinstance(take, Take) and abs(mean_w(take) - record.mean_w) < 1e-6

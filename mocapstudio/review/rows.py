@@ -8,6 +8,7 @@ from typing import Literal, NamedTuple
 from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.facing import ROOT_HEADING, ROOT_POSITION, ROOT_ROWS, carrier
+from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.motion.take import Take
 from mocapstudio.motion.topology import topology
 
@@ -59,7 +60,7 @@ def check_rows(take: Take, rows: Iterable[str]) -> None:
         samples_of(take, row)
 
 
-def check_span(take: Take, start: int, end: int) -> None:
+def check_span(take: Take | MarkerTake, start: int, end: int) -> None:
     """Raise MocapError where [start, end) is empty or leaves the take."""
     if not 0 <= start < end <= take.frames:
         raise MocapError(

@@ -5,17 +5,18 @@ A zip archive with two entries:
 ``session.json``
     ``format`` (``"mocapstudio session"``), ``version`` (1), ``save`` (id of this save),
     ``program`` (version that wrote it), ``saved`` (UTC);
-    ``takes``: a `references.TakeRecord` each: id, name, path relative to the session file
+    ``takes``: a `take_record.TakeRecord` each: id, name, path relative to the session file
     (slashes) and absolute, SHA-256 of the file, how it was read, what it must hold, offset in
-    seconds;
+    seconds; marker takes have ``labels`` in the place of ``joints``;
     ``sitting``: ``edits``, ``decisions``, ``protected``, ``trims`` as in `wire`, ``contacts`` and
-    ``points`` as in `contact_wire`;
+    ``points`` as in `contact_wire`, ``marker_edits`` as in `marker_wire`;
     ``context``: paths, relative and absolute; ``parameters`` of detection;
     ``active``, ``frame``, ``joints``, ``span``, ``flag``: what was looked at;
     ``flags`` and ``choices`` by performer, so that the queue shows before the next analysis.
 ``samples.npz``
     ``edits/ID/rotations`` (frames, joints, 4) and ``edits/ID/translations`` (frames, 3), float64,
-    metres; ``takes/ID/…`` for takes that have no file of their own.
+    metres; ``marker_edits/ID/positions`` (frames, markers, 3), with NaN where a marker stays
+    missing; ``takes/ID/…`` for takes that have no file of their own.
 
 Frames are 0-based at the take's own rate, spans half-open. Fields that are unknown are ignored; a
 file with a higher ``version`` is refused. Takes themselves are never written to.
@@ -37,9 +38,11 @@ from mocapstudio.review import journal_records, lock, session_record
 from mocapstudio.review.core import new_id
 from mocapstudio.review.document import Document
 from mocapstudio.review.opening import Opening, journal_path
-from mocapstudio.review.references import Relocate, absolute, moved, refer, relative_to
+from mocapstudio.review.records import Arrays
+from mocapstudio.review.references import Relocate
 from mocapstudio.review.session_record import FORMAT, VERSION, PathRecord, SessionRecord
-from mocapstudio.review.wire import Arrays, pack, pack_flag
+from mocapstudio.review.take_record import absolute, moved, refer, relative_to
+from mocapstudio.review.wire import pack, pack_flag
 
 SUFFIX = ".mocapstudio"
 
@@ -56,7 +59,8 @@ def save(document: Document, path: Path | str) -> None:
     """
     path = absolute(path)
     record, arrays = _recorded(document, path.parent)
-    sources = [p.take.source for p in document.state.scene.performers]
+    state = document.state
+    sources = [p.take.source for p in state.everyone]
     inputs = [source.path for source in sources if source is not None]
     write_whole(path, [session_record.to_bytes(record, arrays)], inputs=inputs)
     document.mark_saved(path, record.save)
@@ -111,7 +115,7 @@ def _recorded(document: Document, folder: Path) -> tuple[SessionRecord, Arrays]:
         program=__version__,
         saved=datetime.now(UTC).isoformat(timespec="seconds").replace("+00:00", "Z"),
         takes=(
-            *(refer(p, folder, arrays) for p in performers),
+            *(refer(p, folder, arrays) for p in state.everyone),
             *(moved(absent, folder) for absent in document.absent),
         ),
         sitting=pack(state.sitting, arrays),

@@ -13,17 +13,16 @@ import msgspec
 
 from mocapstudio.motion.errors import FileError, MocapError
 from mocapstudio.motion.facing import ROOT_ROWS
-from mocapstudio.review.references import TakeRecord
-from mocapstudio.review.wire import (
+from mocapstudio.review.records import (
     Arrays,
-    FlagRecord,
     MalformedError,
     Record,
-    SittingRecord,
     arrays_from_bytes,
     arrays_to_bytes,
     check_unique,
 )
+from mocapstudio.review.take_record import TakeRecord
+from mocapstudio.review.wire import FlagRecord, SittingRecord
 
 FORMAT = "mocapstudio session"
 VERSION = 1
@@ -123,6 +122,7 @@ def check(record: SessionRecord) -> None:
     """
     check_unique((t.id for t in record.takes), "performer")
     check_unique((e.id for e in record.sitting.edits), "edit")
+    check_unique((e.id for e in record.sitting.marker_edits), "edit")
     check_unique((f"{c.id} of {c.performer}" for c in record.sitting.contacts), "contact")
     checks = _Checks(record.takes)
     checks.sitting(record.sitting)
@@ -138,7 +138,10 @@ class _Checks:
 
     def __init__(self, takes: Iterable[TakeRecord]) -> None:
         self._takes = {take.id: take for take in takes}
-        self._rows = {one.id: {*one.joints, *ROOT_ROWS} for one in self._takes.values()}
+        self._rows = {
+            one.id: {*one.joints, *ROOT_ROWS} if one.labels is None else set()
+            for one in self._takes.values()
+        }
 
     def sitting(self, record: SittingRecord) -> None:
         for edit in record.edits:
@@ -153,6 +156,11 @@ class _Checks:
             self.span(trim.performer, (), trim.start, trim.end)
         for contact in record.contacts:
             self.span(contact.performer, (contact.joint,), contact.start, contact.end)
+        for change in record.marker_edits:
+            self.span(change.performer, (), change.start, change.end)
+            labels = self._takes[change.performer].labels or ()
+            for label in set(change.markers).difference(labels):
+                raise MalformedError(f"{change.performer} has no marker {label}")
         for own in record.points:
             self.span(own.performer, (point.joint for point in own.points), 0, 1)
 

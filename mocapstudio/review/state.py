@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from mocapstudio.cleaning.model import Proposal
 from mocapstudio.cleaning.parameters import DetectionParameters
 from mocapstudio.motion.take import Take
+from mocapstudio.review.marker_model import MarkerPerformer
 from mocapstudio.review.model import Performer, QueueItem, Scene, Selection, Sitting
 
 if TYPE_CHECKING:
@@ -48,6 +49,8 @@ class DocumentState:
     ----------
     scene
         Takes that share one clock and space.
+    markers
+        Marker takes of the sitting.
     active
         Id of the performer under review, or "".
     frame
@@ -78,6 +81,7 @@ class DocumentState:
     """
 
     scene: Scene = field(default_factory=Scene)
+    markers: tuple[MarkerPerformer, ...] = ()
     active: str = ""
     frame: int = 0
     selection: Selection = field(default_factory=Selection)
@@ -108,6 +112,11 @@ class DocumentState:
     def performer(self) -> Performer | None:
         """The performer under review, or None in an empty scene."""
         return self.scene.performer(self.active) if self.active else None
+
+    @property
+    def everyone(self) -> tuple[Performer | MarkerPerformer, ...]:
+        """The performers of the scene, then the marker takes."""
+        return (*self.scene.performers, *self.markers)
 
     @property
     def take(self) -> Take | None:

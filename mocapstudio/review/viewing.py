@@ -35,10 +35,7 @@ class Viewing(Core):
             Seconds by which the take starts after the scene's zero.
         """
         scene = self._state.scene
-        taken = {p.id for p in scene.performers} | {a.id for a in self.absent}
-        name, n = take.name, 2
-        while name in taken:
-            name, n = f"{take.name}#{n}", n + 1
+        name = self._free_id(take.name)
         performer = Performer(name, take, offset, partner)
         first = not any(not p.partner for p in scene.performers)
         changes: dict[str, Any] = {"scene": Scene((*scene.performers, performer))}

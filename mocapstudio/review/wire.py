@@ -6,28 +6,21 @@ field may be added without a new version.
 
 from __future__ import annotations
 
-import io
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
-import msgspec
-import numpy as np
 from numpy.typing import NDArray
 
 from mocapstudio.cleaning.model import Flag, Kind, Neighbour
 from mocapstudio.review import contact_wire
+from mocapstudio.review.marker_wire import (
+    MarkerEditRecord,
+    pack_marker_edit,
+    unpack_marker_edit,
+)
 from mocapstudio.review.model import Decision, Edit, Protected, Sitting, Verdict
-
-Arrays = dict[str, NDArray[Any]]
-
-
-class MalformedError(ValueError):
-    """Records that contradict themselves or their arrays; the message says how."""
-
-
-class Record(msgspec.Struct, frozen=True, omit_defaults=True):
-    """Base of all records."""
+from mocapstudio.review.records import Arrays, Record, samples
 
 
 class NeighbourRecord(Record, frozen=True):
@@ -112,6 +105,7 @@ class SittingRecord(Record, frozen=True):
     trims: tuple[TrimRecord, ...] = ()
     contacts: tuple[contact_wire.ContactRecord, ...] = ()
     points: tuple[contact_wire.PointsRecord, ...] = ()
+    marker_edits: tuple[MarkerEditRecord, ...] = ()
 
 
 def pack_flag(flag: Flag) -> FlagRecord:
@@ -146,6 +140,7 @@ def pack(sitting: Sitting, arrays: Arrays) -> SittingRecord:
         tuple(TrimRecord(performer, *span) for performer, span in sitting.trims),
         tuple(contact_wire.pack_contact(c) for c in sitting.contacts),
         tuple(contact_wire.pack_points(p) for p in sitting.points),
+        tuple(pack_marker_edit(e, arrays) for e in sitting.marker_edits),
     )
 
 
@@ -170,6 +165,7 @@ def unpack(record: SittingRecord, arrays: Mapping[str, NDArray[Any]]) -> Sitting
         tuple((t.performer, (t.start, t.end)) for t in record.trims),
         tuple(contact_wire.unpack_contact(c) for c in record.contacts),
         tuple(contact_wire.unpack_points(p) for p in record.points),
+        tuple(unpack_marker_edit(e, arrays) for e in record.marker_edits),
     )
 
 
@@ -215,8 +211,8 @@ def _unpack_edit(record: EditRecord, arrays: Mapping[str, NDArray[Any]]) -> Edit
         record.joints,
         record.start,
         record.end,
-        _samples(arrays, f"edits/{record.id}/rotations", (frames, len(record.joints), 4)),
-        _samples(arrays, key, (frames, 3)) if key in arrays else None,
+        samples(arrays, f"edits/{record.id}/rotations", (frames, len(record.joints), 4)),
+        samples(arrays, key, (frames, 3)) if key in arrays else None,
         record.method,
         None if record.donor is None else _unpack_donor(record.donor),
         record.flag,
@@ -225,16 +221,6 @@ def _unpack_edit(record: EditRecord, arrays: Mapping[str, NDArray[Any]]) -> Edit
         record.time,
         record.muted,
     )
-
-
-def _samples(
-    arrays: Mapping[str, NDArray[Any]], key: str, shape: tuple[int, ...]
-) -> NDArray[np.float64]:
-    found = arrays.get(key)
-    if found is None or found.shape != shape or found.dtype != np.float64:
-        raise MalformedError(f"samples {key} are missing or damaged")
-    found.setflags(write=False)
-    return found
 
 
 def _pack_decision(decision: Decision) -> DecisionRecord:
@@ -251,31 +237,3 @@ def _pack_decision(decision: Decision) -> DecisionRecord:
 def _pack_protected(one: Protected) -> ProtectedRecord:
     rows = tuple(sorted(one.joints))
     return ProtectedRecord(one.performer, rows, one.start, one.end, one.author, one.time)
-
-
-def arrays_to_bytes(arrays: Mapping[str, NDArray[Any]]) -> bytes:
-    """Return an npz file of named arrays."""
-    buffer = io.BytesIO()
-    np.savez_compressed(buffer, allow_pickle=False, **dict(arrays))
-    return buffer.getvalue()
-
-
-def arrays_from_bytes(data: bytes) -> Arrays:
-    """Read an npz file; no pickle.
-
-    Raises
-    ------
-    ValueError, OSError, zipfile.BadZipFile
-        If it is damaged.
-    """
-    with np.load(io.BytesIO(data), allow_pickle=False) as file:
-        return {name: np.ascontiguousarray(file[name]) for name in file.files}
-
-
-def check_unique(ids: Iterable[str], what: str) -> None:
-    """Raise MalformedError where an id comes twice."""
-    seen: set[str] = set()
-    for one in ids:
-        if one in seen:
-            raise MalformedError(f"{what} {one} comes twice")
-        seen.add(one)

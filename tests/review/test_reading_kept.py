@@ -1,0 +1,91 @@
+"""How a file was read outlives the session."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mocapstudio import formats
+from mocapstudio.formats import ReadOptions
+from mocapstudio.review import session_file
+from mocapstudio.review.document import Document
+
+BVH = """HIERARCHY
+ROOT Hips
+{
+  OFFSET 3 90 1
+  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
+  JOINT Chest
+  {
+    OFFSET 0 30 0
+    CHANNELS 3 Zrotation Xrotation Yrotation
+    End Site
+    {
+      OFFSET 0 20 0
+    }
+  }
+}
+MOTION
+Frames: 4
+Frame Time: 0.0333333
+0 90 0 0 0 0 0 0 0
+5 90 1 4 5 6 7 8 9
+9 91 2 8 10 12 14 16 18
+12 90 3 0 5 6 7 8 90
+"""
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ReadOptions(),
+        ReadOptions(forward="x"),
+        ReadOptions(root_offset="add"),
+        ReadOptions(angles="radians", unit=0.01, fps=Fraction(120000, 1001)),
+        ReadOptions(up="z", forward="-x", trim_start=False),
+    ],
+    ids=str,
+)
+def test_a_take_comes_back_as_it_was_read(tmp_path: Path, options: ReadOptions) -> None:
+    file, session = tmp_path / "take.bvh", tmp_path / "s.mocapstudio"
+    file.write_text(BVH)
+    (take,), _ = formats.read(file, options)
+    document = Document("ana")
+    name = document.open_take(take)
+    session_file.save(document, session)
+    loaded = session_file.load(session)
+    again = loaded.state.scene.performer(name).take
+    assert np.array_equal(again.rotations, take.rotations)
+    assert np.array_equal(again.translations, take.translations)
+    assert np.array_equal(again.skeleton.offsets, take.skeleton.offsets)
+    assert (again.rate, again.trim) == (take.rate, take.trim)
+    assert again.source is not None
+    assert again.source.options == options
+
+
+def test_a_skeleton_beside_an_amc_is_found_where_the_folder_has_moved_to(
+    tmp_path: Path, data: Path
+) -> None:
+    folder = tmp_path / "before"
+    folder.mkdir()
+    source = data / "cmu_asfamc"
+    amc = min(source.glob("*.amc"), key=lambda one: one.stat().st_size)
+    asf = next(one for one in source.glob("*.asf") if one.stem == amc.stem.split("_")[0])
+    (folder / "elsewhere.asf").write_bytes(asf.read_bytes())
+    (folder / "take.amc").write_bytes(amc.read_bytes())
+    options = ReadOptions(fps=Fraction(120), skeleton=folder / "elsewhere.asf")
+    (take,), _ = formats.read(folder / "take.amc", options)
+    document = Document("ana")
+    name = document.open_take(take)
+    session_file.save(document, folder / "s.mocapstudio")
+    moved = folder.rename(tmp_path / "after")
+    loaded = session_file.load(moved / "s.mocapstudio")
+    assert not loaded.state.problems
+    again = loaded.state.scene.performer(name).take
+    assert np.array_equal(again.rotations, take.rotations)
+    assert again.source is not None
+    assert again.source.options == replace(options, skeleton=moved / "elsewhere.asf")
