@@ -50,7 +50,7 @@ def run(
     """
     app = make_application()
     from mocapstudio.gui.main_window import MainWindow
-    from mocapstudio.gui.reading import Manner
+    from mocapstudio.review.manner import Manner
 
     window = MainWindow()
     _catch_faults(window.messages.complain)

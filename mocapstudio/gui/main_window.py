@@ -20,7 +20,6 @@ from mocapstudio.gui.jobs import Jobs
 from mocapstudio.gui.journalling import Journalling, left_behind
 from mocapstudio.gui.messages import Messages
 from mocapstudio.gui.playback import Playback
-from mocapstudio.gui.reading import AS_THEY_ARE, Manner
 from mocapstudio.gui.reasons import Reasons
 from mocapstudio.gui.second_map import SecondMap
 from mocapstudio.gui.status_bar import DeskStatusBar
@@ -32,6 +31,7 @@ from mocapstudio.gui.wiring import wire
 from mocapstudio.gui.workspaces.review import ReviewWorkspace
 from mocapstudio.gui.workspaces.welcome import Welcome
 from mocapstudio.review.document import Document
+from mocapstudio.review.manner import AS_THEY_ARE, Manner
 from mocapstudio.review.state import DocumentState
 
 _SIZE = QSize(1440, 900)
@@ -162,7 +162,7 @@ class MainWindow(QMainWindow):
         manner: Manner = AS_THEY_ARE,
     ) -> None:
         """Open what the command line named, read as it asks."""
-        self.files.opening.manner = manner
+        self.files.opening.ask_for(manner)
         if context:
             self.files.opening.set_context(context)
         if paths or partners:

@@ -14,16 +14,18 @@ from mocapstudio.gui.document import DocumentBridge
 from mocapstudio.gui.imports import Imports
 from mocapstudio.gui.jobs import Jobs
 from mocapstudio.gui.messages import Link, Messages
-from mocapstudio.gui.reading import AS_THEY_ARE, Read, reading, reading_context
+from mocapstudio.gui.reading import Read, reading, reading_context
 from mocapstudio.gui.trouble import Trouble
 from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.recording import same_recording
 from mocapstudio.motion.take import Take
+from mocapstudio.review.manner import AS_THEY_ARE, Manner
 from mocapstudio.review.session_file import SUFFIX, load
 
 if TYPE_CHECKING:
     from fractions import Fraction
 
+    from mocapstudio.formats import ReadOptions
     from mocapstudio.review.document import Document
 
 
@@ -66,8 +68,22 @@ class Opening(QObject):
     ) -> None:
         super().__init__(parent)
         self._bridge, self._jobs, self._messages = bridge, jobs, messages
-        self.manner = AS_THEY_ARE
+        self._asked = AS_THEY_ARE
         self.imports = Imports(bridge, self)
+
+    @property
+    def manner(self) -> Manner:
+        """How files are read in this sitting."""
+        return self._bridge.state.manner
+
+    def ask_for(self, manner: Manner) -> None:
+        """Read as the command line asks, in every sitting that does not say otherwise."""
+        self._asked = manner
+        self._bridge.document.set_manner(manner)
+
+    def read_otherwise(self, path: Path, options: ReadOptions) -> None:
+        """Remember a way of its own for a file."""
+        self._bridge.document.set_manner(self.manner.with_own(path, options))
 
     def open(self, paths: Iterable[Path], partners: Iterable[Path] = ()) -> None:
         """Open takes beside those that are open; the first becomes the one under review."""
@@ -132,6 +148,8 @@ class Opening(QObject):
 
     def greet(self, document: Document) -> None:
         """Tell what was odd about a session that is on the desk now, and read its context."""
+        if document.state.manner == AS_THEY_ARE:
+            document.set_manner(self._asked)
         state = document.state
         if state.path is not None:
             settings.add_recent("files", state.path)
@@ -165,7 +183,7 @@ class Opening(QObject):
 
         def answered(rate: Fraction) -> None:
             for path in files:
-                self.manner = self.manner.with_own(path, replace(self.manner.of(path), fps=rate))
+                self.read_otherwise(path, replace(self.manner.of(path), fps=rate))
             again()
 
         if files:
@@ -192,10 +210,6 @@ class Opening(QObject):
             self._tell_repairs(read)
         self._messages.complain_of(read.troubles)
         if read.markers:
-            for markers in read.markers:
-                # Nothing on the desk shows yet how they were read: a rate is asked for again.
-                if markers.source is not None:
-                    self.manner = self.manner.without_own(markers.source.path)
             self.markers_found.emit(tuple(read.markers), partner)
 
     def _known(self, take: Take) -> str:

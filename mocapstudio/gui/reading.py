@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from mocapstudio import formats
@@ -14,6 +14,7 @@ from mocapstudio.motion.joint_map import rename_joints
 from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.take import Take
+from mocapstudio.review.manner import AS_THEY_ARE, Manner
 
 
 @dataclass
@@ -28,41 +29,6 @@ class Read:
     files: list[Imported] = field(default_factory=list)
     rateless: list[Path] = field(default_factory=list)
     troubles: list[Trouble] = field(default_factory=list)
-
-
-@dataclass(frozen=True)
-class Manner:
-    """How takes are read in this sitting.
-
-    Parameters
-    ----------
-    options
-        What replaces the files' own rate, unit and up axis; None for what they say.
-    renamed
-        Joints of the context, by name, and what they are called in the take.
-    own
-        Files that are read in a way of their own.
-    """
-
-    options: formats.ReadOptions | None = None
-    renamed: Mapping[str, str] = field(default_factory=dict)
-    own: Mapping[Path, formats.ReadOptions] = field(default_factory=dict)
-
-    def of(self, path: Path) -> formats.ReadOptions:
-        """Return how a file is read."""
-        return self.own.get(path.resolve()) or self.options or formats.ReadOptions()
-
-    def without_own(self, path: Path) -> Manner:
-        """Return the manner in which one file is read like the others."""
-        own = {one: options for one, options in self.own.items() if one != path.resolve()}
-        return replace(self, own=own)
-
-    def with_own(self, path: Path, options: formats.ReadOptions) -> Manner:
-        """Return the manner in which one file is read otherwise."""
-        return replace(self, own={**self.own, path.resolve(): options})
-
-
-AS_THEY_ARE = Manner()
 
 
 def reading(

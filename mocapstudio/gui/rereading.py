@@ -63,10 +63,13 @@ class Rereading(QObject):
 
     def look(self, path: Path) -> None:
         """Find out what is odd about a file that came with a session."""
-        rates = [one.take.rate for one in self._performers(path)]
+        takes = [one.take for one in self._performers(path)]
+        rates = [one.rate for one in takes]
+        known = next((one.source.options for one in takes if one.source is not None), None)
 
         def work() -> Reading:
-            options = self._opening.manner.of(path)
+            # As the session has kept it; one from an earlier version may not have.
+            options = known or self._opening.manner.of(path)
             try:
                 return (*read_any(path, options), options)
             except NoRateError:
@@ -106,7 +109,7 @@ class Rereading(QObject):
     def _replace(self, path: Path, reading: Reading) -> None:
         found, report, options = reading
         takes = [one for one in found if isinstance(one, Take)]
-        self._opening.manner = self._opening.manner.with_own(path, options)
+        self._opening.read_otherwise(path, options)
         self._note((list(takes or found), report, options))
         if not takes:
             # What was solved from them stays; they have to be solved again.

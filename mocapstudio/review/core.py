@@ -26,7 +26,7 @@ from mocapstudio.review.replay import Results
 from mocapstudio.review.state import DocumentState, differing
 from mocapstudio.review.take_record import TakeRecord
 
-_LASTING = frozenset({"active", "scene", "markers", "context", "parameters"})
+_LASTING = frozenset({"active", "scene", "markers", "context", "parameters", "manner"})
 
 
 class Core:

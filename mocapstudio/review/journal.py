@@ -22,6 +22,7 @@ from mocapstudio.review import journal_records as records
 from mocapstudio.review.core import new_id
 from mocapstudio.review.document import Document
 from mocapstudio.review.lock import Lock, holder, is_open_here, lock_path
+from mocapstudio.review.manner import pack_manner
 from mocapstudio.review.marker_model import MarkerPerformer
 from mocapstudio.review.model import Performer, Sitting
 from mocapstudio.review.opening import Opening, journal_path
@@ -153,6 +154,7 @@ class Journal:
                 tuple(str(absolute(path)) for path in state.context),
                 dataclasses.asdict(state.parameters),
                 {p.id: (p.offset, p.partner) for p in state.scene.performers},
+                pack_manner(state.manner),
             )
         )
 

@@ -21,6 +21,7 @@ import msgspec
 from mocapstudio.motion.errors import FileError
 from mocapstudio.review.contact_wire import ContactRecord, PointsRecord
 from mocapstudio.review.history import History, Step
+from mocapstudio.review.manner import MannerRecord
 from mocapstudio.review.marker_wire import MarkerEditRecord
 from mocapstudio.review.model import Sitting
 from mocapstudio.review.records import (
@@ -118,6 +119,7 @@ class Settled(Record, frozen=True, tag="settled"):
     context: tuple[str, ...]
     parameters: dict[str, Any]
     places: dict[str, tuple[float, bool]]
+    manner: MannerRecord = MannerRecord()
 
 
 Event = Opened | Closed | Stepped | Undone | Redone | Settled

@@ -22,6 +22,7 @@ from mocapstudio.review.journal_records import (
     advanced,
     from_text,
 )
+from mocapstudio.review.manner import unpack_manner
 from mocapstudio.review.marker_model import MarkerPerformer
 from mocapstudio.review.model import Performer, Scene, Selection
 from mocapstudio.review.recorder import Recovered
@@ -133,6 +134,7 @@ class Opening:
             self._record.choices,
             context=self._context(),
             parameters=self._parameters(),
+            manner=unpack_manner((self._settled or self._record).manner),
             markers=tuple(markers),
             **self._view(scene),
         )

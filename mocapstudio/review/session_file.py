@@ -10,7 +10,8 @@ A zip archive with two entries:
     seconds; marker takes have ``labels`` in the place of ``joints``;
     ``sitting``: ``edits``, ``decisions``, ``protected``, ``trims`` as in `wire`, ``contacts`` and
     ``points`` as in `contact_wire`, ``marker_edits`` as in `marker_wire`;
-    ``context``: paths, relative and absolute; ``parameters`` of detection;
+    ``context``: paths, relative and absolute; ``parameters`` of detection; ``manner`` in which
+    files are read;
     ``active``, ``frame``, ``joints``, ``span``, ``flag``: what was looked at;
     ``flags`` and ``choices`` by performer, so that the queue shows before the next analysis.
 ``samples.npz``
@@ -37,6 +38,7 @@ from mocapstudio.motion.errors import FileError
 from mocapstudio.review import journal_records, lock, session_record
 from mocapstudio.review.core import new_id
 from mocapstudio.review.document import Document
+from mocapstudio.review.manner import pack_manner
 from mocapstudio.review.opening import Opening, journal_path
 from mocapstudio.review.records import Arrays
 from mocapstudio.review.references import Relocate
@@ -121,6 +123,7 @@ def _recorded(document: Document, folder: Path) -> tuple[SessionRecord, Arrays]:
         sitting=pack(state.sitting, arrays),
         context=tuple(_path_record(Path(p), folder) for p in state.context),
         parameters=dataclasses.asdict(state.parameters),
+        manner=pack_manner(state.manner),
         active=state.active,
         frame=state.frame,
         joints=tuple(sorted(state.selection.joints)),

@@ -13,6 +13,7 @@ import msgspec
 
 from mocapstudio.motion.errors import FileError, MocapError
 from mocapstudio.motion.facing import ROOT_ROWS
+from mocapstudio.review.manner import MannerRecord
 from mocapstudio.review.records import (
     Arrays,
     MalformedError,
@@ -56,6 +57,7 @@ class SessionRecord(Record, frozen=True):
     sitting: SittingRecord = SittingRecord()
     context: tuple[PathRecord, ...] = ()
     parameters: dict[str, Any] = msgspec.field(default_factory=dict)
+    manner: MannerRecord = MannerRecord()
     active: str = ""
     frame: int = 0
     joints: tuple[str, ...] = ()

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from mocapstudio.cleaning.model import Proposal
 from mocapstudio.cleaning.parameters import DetectionParameters
 from mocapstudio.motion.take import Take
+from mocapstudio.review.manner import AS_THEY_ARE, Manner
 from mocapstudio.review.marker_model import MarkerPerformer
 from mocapstudio.review.model import Performer, QueueItem, Scene, Selection, Sitting
 
@@ -70,6 +71,8 @@ class DocumentState:
     choices, proposals
         By flag id of the active performer: neighbour chosen (None: the engine's own choice) and
         the replacement offered.
+    manner
+        How files are read.
     path
         The session file, or None while unsaved.
     dirty
@@ -92,6 +95,7 @@ class DocumentState:
     sitting: Sitting = field(default_factory=Sitting)
     choices: Mapping[str, int | None] = field(default_factory=_empty)
     proposals: Mapping[str, Proposal] = field(default_factory=_empty)
+    manner: Manner = AS_THEY_ARE
     path: Path | None = None
     dirty: bool = False
     can_undo: str | None = None

@@ -12,6 +12,7 @@ from mocapstudio.cleaning.parameters import DetectionParameters
 from mocapstudio.motion.take import Take
 from mocapstudio.review import walk
 from mocapstudio.review.core import Core
+from mocapstudio.review.manner import Manner
 from mocapstudio.review.model import Performer, Scene, Selection
 from mocapstudio.review.rows import check_rows, check_span
 
@@ -207,6 +208,10 @@ class Viewing(Core):
         """Set the context: its paths as shown and its takes."""
         self._context = tuple(takes)
         self._put(context=tuple(paths))
+
+    def set_manner(self, manner: Manner) -> None:
+        """Set how files are read from now on; takes that are open stay as they were read."""
+        self._put(manner=manner)
 
     def begin_analysis(self, performer: str) -> int:
         """Return the generation of a new analysis; earlier ones of that performer are stale."""

@@ -14,7 +14,7 @@ from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import QApplication, QDialogButtonBox
 
 from mocapstudio import formats
-from mocapstudio.gui.reading import Manner
+from mocapstudio.review.manner import Manner
 
 
 def open_take(hands: Hands, path: Path) -> None:
@@ -205,7 +205,7 @@ def test_closing_with_unsaved_decisions_asks(hands, generated, tmp_path):
 CRASH = """
 import os, sys
 from mocapstudio import formats
-from mocapstudio.gui.reading import Manner
+from mocapstudio.review.manner import Manner
 from mocapstudio.cleaning.detection import detect
 from mocapstudio.motion.progress import run
 from mocapstudio.review.document import Document

@@ -11,8 +11,9 @@ import pytest
 
 from mocapstudio import formats
 from mocapstudio.formats import ReadOptions
-from mocapstudio.review import session_file
+from mocapstudio.review import journal, session_file
 from mocapstudio.review.document import Document
+from mocapstudio.review.manner import Manner
 
 BVH = """HIERARCHY
 ROOT Hips
@@ -89,3 +90,22 @@ def test_a_skeleton_beside_an_amc_is_found_where_the_folder_has_moved_to(
     assert np.array_equal(again.rotations, take.rotations)
     assert again.source is not None
     assert again.source.options == replace(options, skeleton=moved / "elsewhere.asf")
+
+
+def test_the_manner_of_reading_outlives_session_and_crash(tmp_path: Path) -> None:
+    (tmp_path / "take.bvh").write_text(BVH)
+    (take,), _ = formats.read(tmp_path / "take.bvh")
+    document = Document("ana")
+    document.open_take(take)
+    kept = journal.Journal(document, folder=tmp_path)
+    manner = Manner(ReadOptions(unit=0.01), {"a": "b"})
+    manner = manner.with_own(tmp_path / "kick.csv", ReadOptions(fps=Fraction(25)))
+    document.set_manner(manner)
+    kept.close(keep=True)
+    assert journal.recover(kept.path).state.manner == manner
+    session = tmp_path / "s.mocapstudio"
+    session_file.save(document, session)
+    loaded = session_file.load(session)
+    assert loaded.state.manner == manner
+    assert not loaded.state.dirty
+    assert loaded.state.manner.of(tmp_path / "kick.csv").fps == 25
