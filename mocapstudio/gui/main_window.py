@@ -7,7 +7,7 @@ from pathlib import Path
 from PySide6.QtCore import QSize, Qt, QTimer
 from PySide6.QtGui import QCloseEvent, QGuiApplication, QMouseEvent
 from PySide6.QtOpenGLWidgets import QOpenGLWidget
-from PySide6.QtWidgets import QApplication, QLineEdit, QMainWindow, QSpinBox
+from PySide6.QtWidgets import QAbstractSpinBox, QApplication, QLineEdit, QMainWindow
 
 from mocapstudio.gui import icons, settings, theme
 from mocapstudio.gui.actions import Actions
@@ -90,7 +90,7 @@ class MainWindow(QMainWindow):
     def leave_text_field(self) -> None:
         """Give the keys back to the desk."""
         focus = QApplication.focusWidget()
-        if isinstance(focus, QLineEdit | QSpinBox):
+        if isinstance(focus, QLineEdit | QAbstractSpinBox):
             focus.clearFocus()
 
     def mousePressEvent(self, event: QMouseEvent) -> None:

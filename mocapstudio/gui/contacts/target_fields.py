@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
-from PySide6.QtCore import QEvent, QSignalBlocker, Qt, Signal
-from PySide6.QtGui import QKeyEvent
+from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import (
     QComboBox,
-    QDoubleSpinBox,
     QGridLayout,
     QHBoxLayout,
     QSizePolicy,
@@ -17,42 +15,19 @@ from PySide6.QtWidgets import (
 )
 
 from mocapstudio.cleaning.contacts.model import Fixed, Floor, Following, Line, Target
+from mocapstudio.gui.widgets.fields import DecimalField
 from mocapstudio.gui.widgets.parts import label
 from mocapstudio.motion.take import Take
 
-_LEAVING = (Qt.Key.Key_Escape, Qt.Key.Key_Return, Qt.Key.Key_Enter)
 _AXES = ("X", "Y", "Z")
 
 
-class MetresField(QDoubleSpinBox):
-    """A length in metres; gives the keys back to the desk on Enter and Escape."""
+class MetresField(DecimalField):
+    """A length in metres."""
 
     def __init__(self, tip: str) -> None:
-        super().__init__()
-        self.setRange(-1000.0, 1000.0)
-        self.setDecimals(3)
-        self.setSingleStep(0.01)
-        self.setKeyboardTracking(False)
-        self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
-        self.setAlignment(Qt.AlignmentFlag.AlignRight)
-        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        super().__init__(-1000.0, 1000.0, 0.01, 3)
         self.setToolTip(tip)
-
-    def event(self, event: QEvent) -> bool:
-        """Claim Escape and Enter."""
-        overrides = event.type() == QEvent.Type.ShortcutOverride
-        if overrides and isinstance(event, QKeyEvent) and event.key() in _LEAVING:
-            event.accept()
-            return True
-        return super().event(event)
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Leave on Enter, and on Escape with the number that stood there."""
-        if event.key() == Qt.Key.Key_Escape:
-            self.lineEdit().setText(self.textFromValue(self.value()))
-        super().keyPressEvent(event)
-        if event.key() in _LEAVING:
-            self.clearFocus()
 
 
 class TargetFields(QWidget):

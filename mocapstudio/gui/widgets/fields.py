@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, Qt
+from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QKeyEvent
-from PySide6.QtWidgets import QLineEdit, QSpinBox
+from PySide6.QtWidgets import QDoubleSpinBox, QLineEdit, QSizePolicy, QSpinBox
 
 _LEAVING = (Qt.Key.Key_Escape, Qt.Key.Key_Return, Qt.Key.Key_Enter)
 
@@ -38,20 +38,69 @@ class SearchField(QLineEdit):
             super().keyPressEvent(event)
 
 
-class NumberField(QSpinBox):
-    """Gives the keys back to the desk on Enter and on Escape, which also takes the typing back."""
+class _Leaving(QObject):
+    """Lets a spin box leave on Enter, and on Escape with the number that stood there."""
 
-    def event(self, event: QEvent) -> bool:
-        """Claim Escape and Enter."""
+    def __init__(self, field: QSpinBox | QDoubleSpinBox) -> None:
+        super().__init__(field)
+        self._field = field
+        field.installEventFilter(self)
+
+    def eventFilter(self, _watched: QObject, event: QEvent) -> bool:
+        """Claim Escape and Enter, and leave on them."""
         if _claims(event):
             event.accept()
             return True
-        return super().event(event)
+        if (
+            event.type() == QEvent.Type.KeyPress
+            and isinstance(event, QKeyEvent)
+            and event.key() in _LEAVING
+        ):
+            field = self._field
+            if event.key() == Qt.Key.Key_Escape:
+                field.lineEdit().setText(_shown(field))
+            field.clearFocus()
+            return True
+        return False
 
-    def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Leave on Enter, and on Escape with the number that stood there."""
-        if event.key() == Qt.Key.Key_Escape:
-            self.lineEdit().setText(self.textFromValue(self.value()))
-        super().keyPressEvent(event)
-        if event.key() in _LEAVING:
-            self.clearFocus()
+
+def _shown(field: QSpinBox | QDoubleSpinBox) -> str:
+    value = field.value()
+    text = field.textFromValue(value) if isinstance(field, QDoubleSpinBox) else str(value)
+    return text + field.suffix()
+
+
+class NumberField(QSpinBox):
+    """A whole number; gives the keys back to the desk on Enter and on Escape."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        _Leaving(self)
+
+
+class DecimalField(QDoubleSpinBox):
+    """A number with decimals, told when the typing is done; leaves on Enter and on Escape.
+
+    Parameters
+    ----------
+    low, high
+        Bounds.
+    step
+        Of the arrows.
+    decimals
+        Shown.
+    unit
+        Shown after the number, or "".
+    """
+
+    def __init__(self, low: float, high: float, step: float, decimals: int, unit: str = "") -> None:
+        super().__init__()
+        self.setRange(low, high)
+        self.setDecimals(decimals)
+        self.setSingleStep(step)
+        self.setSuffix(f" {unit}" if unit else "")
+        self.setKeyboardTracking(False)
+        self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
+        self.setAlignment(Qt.AlignmentFlag.AlignRight)
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        _Leaving(self)
