@@ -7,11 +7,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from mocapstudio.comparison.kata import retimed
 from mocapstudio.comparison.model import Comparison, Segment
-from mocapstudio.comparison.parameters import ComparisonParameters
+from mocapstudio.comparison.parameters import TIMING_ONLY, ComparisonParameters
 from mocapstudio.motion.errors import MocapError
+from mocapstudio.motion.parameters import schemas
 from mocapstudio.review.announcer import Announcer
-from mocapstudio.review.comparing_segments import Segments, Steps, check, with_segment
+from mocapstudio.review.comparing_segments import Segments, check, with_segment
 from mocapstudio.review.comparing_state import (
     MOST_SOURCES,
     Compared,
@@ -20,6 +22,7 @@ from mocapstudio.review.comparing_state import (
     Recording,
     differing,
 )
+from mocapstudio.review.comparing_steps import Steps, Undoable
 
 __all__ = ["MOST_SOURCES", "Compared", "Comparing", "ComparingState", "Linked", "Recording"]
 
@@ -54,7 +57,7 @@ class Comparing:
         """Compare to another performance; what was compared before is void, segments go."""
         if take is self._state.reference:
             return
-        self._steps, self._saved = Steps(), ()
+        self._begin_segments()
         self._put(
             reference=take,
             sources=tuple(Compared(one.id, one.take) for one in self._state.sources),
@@ -111,7 +114,7 @@ class Comparing:
         others = [one for one in self._state.sources if one is not source]
         back = Compared(self._free_id(reference.name, others), reference)
         at = self._state.sources.index(source)
-        self._steps, self._saved = Steps(), ()
+        self._begin_segments()
         sources = tuple(Compared(one.id, one.take) for one in (*others[:at], back, *others[at:]))
         choice = self._choice(sources[at], frame=0)
         self._put(
@@ -120,7 +123,7 @@ class Comparing:
 
     def clear(self) -> None:
         """Begin anew, with the parameters as they are."""
-        self._steps, self._saved = Steps(), ()
+        self._begin_segments()
         self._put(
             reference=None, sources=(), chosen="", frame=0, source_frame=0, shown=(-0.5, 0.5),
             row=None, segment=None, labels=None,
@@ -133,10 +136,21 @@ class Comparing:
             self._put(**self._choice(one))
 
     def set_parameters(self, parameters: ComparisonParameters) -> None:
-        """Compare in another way; what was compared before is void."""
-        if parameters != self._state.parameters:
-            void = tuple(Compared(one.id, one.take) for one in self._state.sources)
-            self._put(parameters=parameters, sources=void)
+        """Compare in another way, as a step that can be undone.
+
+        What was compared before is void, unless the alignment stays as it was.
+        """
+        old, words = self._state.parameters, schemas(ComparisonParameters)
+        names = [name for name in words if getattr(old, name) != getattr(parameters, name)]
+        label = "Change Parameters" if len(names) != 1 else f"Change {words[names[0]].label}"
+        present = replace(self._steps.present, parameters=parameters)
+        self._steps = self._steps.push(label, present, joining=True)
+        self._put()
+
+    def compare_again(self) -> None:
+        """Try once more what failed or was cancelled."""
+        tried = (Compared(one.id, one.take) if one.failure else one for one in self._state.sources)
+        self._put(sources=tuple(tried))
 
     def pending(self) -> tuple[Compared, ...]:
         """Sources that are still to be compared."""
@@ -232,11 +246,11 @@ class Comparing:
 
     def mark_saved(self, path: Path) -> None:
         """Note that the segments stand in a file."""
-        self._saved = self._steps.present
+        self._saved = self._steps.present.segments
         self._put(labels=path)
 
     def undo(self) -> None:
-        """Take the last step over the segments back."""
+        """Take the last step over segments or parameters back."""
         self._steps = self._steps.undo()
         self._put(segment=None)
 
@@ -249,13 +263,17 @@ class Comparing:
 
     def _put(self, **changes: Any) -> None:
         steps, old = self._steps, self._state
+        present = steps.present
+        if present.parameters != old.parameters:
+            changes.setdefault("sources", _under(present.parameters, old))
         new = replace(
             old,
             **changes,
-            segments=steps.present,
+            segments=present.segments,
+            parameters=present.parameters,
             can_undo=steps.past[-1][0] if steps.past else None,
             can_redo=steps.future[-1][0] if steps.future else None,
-            unsaved=steps.present != self._saved,
+            unsaved=present.segments != self._saved,
         )
         if differing(old, new):
             self._state = new
@@ -265,8 +283,13 @@ class Comparing:
         reference = self._state.reference
         if reference is None:
             raise MocapError("there is no reference whose parts could be named")
-        self._steps = self._steps.push(label, check(segments, reference.frames))
+        present = replace(self._steps.present, segments=check(segments, reference.frames))
+        self._steps = self._steps.push(label, present)
         self._put(segment=selected)
+
+    def _begin_segments(self) -> None:
+        """Forget the segments, and how to bring them back."""
+        self._steps, self._saved = Steps(Undoable(parameters=self._state.parameters)), ()
 
     def _at(self, at: int) -> Segment:
         if not 0 <= at < len(self._state.segments):
@@ -321,3 +344,17 @@ class Comparing:
             return name
         number = next(n for n in range(2, 2 + len(taken)) if f"{name} {n}" not in taken)
         return f"{name} {number}"
+
+
+def _under(parameters: ComparisonParameters, old: ComparingState) -> tuple[Compared, ...]:
+    """Return the sources as they are under other parameters: timed anew, or not compared yet."""
+    before = old.parameters
+    same = replace(before, **{name: getattr(parameters, name) for name in TIMING_ONLY})
+    if same != parameters:
+        return tuple(Compared(one.id, one.take) for one in old.sources)
+    return tuple(
+        one
+        if one.comparison is None
+        else replace(one, linked=Linked(retimed(one.comparison, parameters)))
+        for one in old.sources
+    )

@@ -1,43 +1,14 @@
-"""Undoable steps over the segments of a comparison sitting."""
+"""Segments that keep out of each other's way."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from mocapstudio.comparison.model import Segment
 from mocapstudio.motion.errors import MocapError
 
 Segments = tuple[Segment, ...]
-
-
-@dataclass(frozen=True)
-class Steps:
-    """The present segments, and those before and after each step that was done or undone."""
-
-    present: Segments = ()
-    past: tuple[tuple[str, Segments], ...] = ()
-    future: tuple[tuple[str, Segments], ...] = ()
-
-    def push(self, label: str, segments: Segments) -> Steps:
-        """Go on to other segments; the same ones are no step."""
-        if segments == self.present:
-            return self
-        return Steps(segments, (*self.past, (label, self.present)))
-
-    def undo(self) -> Steps:
-        """Go a step back; the same where there is none."""
-        if not self.past:
-            return self
-        label, before = self.past[-1]
-        return Steps(before, self.past[:-1], (*self.future, (label, self.present)))
-
-    def redo(self) -> Steps:
-        """Do an undone step again; the same where there is none."""
-        if not self.future:
-            return self
-        label, after = self.future[-1]
-        return Steps(after, (*self.past, (label, self.present)), self.future[:-1])
 
 
 def with_segment(segments: Segments, new: Segment) -> Segments:

@@ -143,7 +143,7 @@ class ComparingState:
     segment
         Position of the selected segment, or None.
     can_undo, can_redo
-        What Undo and Redo would do to the segments, or None.
+        What Undo and Redo would do to segments and parameters, or None.
     labels
         The file the segments were last read from or written to, or None.
     unsaved
