@@ -19,6 +19,7 @@ _ARM = ("collar", "shoulder", "elbow", "hand", "fingers")
 _LEG = ("hip joint", "hip", "knee", "foot", "toes")
 _MIDDLE = 2
 """Place of elbow and knee among those."""
+_NEARLY = 0.9
 
 
 def performance_of_take(take: Take, unreliable: NDArray[np.bool_] | None = None) -> Performance:
@@ -52,7 +53,8 @@ def performance_of_take(take: Take, unreliable: NDArray[np.bool_] | None = None)
 def joint_roles(skeleton: Skeleton) -> dict[int, str]:
     """Tell what joints are in any body, by the shape of the limbs: ``"left elbow"``, ``"head"``.
 
-    The elbow (knee) is where the two longest bones of an arm (leg) meet.
+    The elbow (knee) is where the two longest bones of an arm (leg) meet, or the farther from the
+    trunk where two places are nearly alike: a collar bone may be as long as a forearm.
     """
     parts = topology(skeleton)
     roles = {parts.hips: "pelvis"}
@@ -78,7 +80,8 @@ def _limb_roles(skeleton: Skeleton, limb: Limb, joints: list[int]) -> dict[int, 
     bones = np.linalg.norm(skeleton.offsets[chain], axis=1)
     if len(chain) < 3:
         return {}
-    middle = 1 + int(np.argmax(bones[1:-1] + bones[2:]))
+    reach = bones[1:-1] + bones[2:]
+    middle = 1 + int(np.flatnonzero(reach >= _NEARLY * reach.max())[-1])
     found = {}
     for at, joint in enumerate(chain):
         place = at - middle + _MIDDLE
