@@ -33,6 +33,7 @@ from mocapstudio.evaluation.kata_benchmark import (
     recovered_warps,
     suggested_boundaries,
 )
+from mocapstudio.evaluation.kata_events import event_table, found_events
 from mocapstudio.evaluation.reports import Report, without_nan
 from mocapstudio.evaluation.speed_benchmark import SpeedRow
 from mocapstudio.evaluation.tables import Table, number
@@ -50,7 +51,13 @@ _BRIEF_FOLDS, _BRIEF_ITERATIONS, _BRIEF_REFERENCES = 3, 60, 1
 
 
 def alignment(
-    data: Sequence[Path], labels: Sequence[Path], seed: int, limit: int, *, brief: bool = False
+    data: Sequence[Path],
+    labels: Sequence[Path],
+    seed: int,
+    limit: int,
+    *,
+    events: Sequence[Path] = (),
+    brief: bool = False,
 ) -> Generator[Progress, None, Report]:
     """Measure online alignment on labelled actions and on known warps, and the kata comparison.
 
@@ -62,6 +69,9 @@ def alignment(
         Files of segments; without any, only known warps are measured.
     limit
         How many takes are performed again.
+    events
+        Files of segments of which every two performances, be they by different people, are
+        compared.
     brief
         One reference an action, short training, no training speed.
     """
@@ -76,6 +86,7 @@ def alignment(
     speed = yield from online_speed(long=not brief)
     recovered = yield from recovered_warps(data, seed=seed, limit=min(limit, 1 if brief else 3))
     boundaries = yield from suggested_boundaries(data, labels)
+    met = yield from found_events(data, events)
     peers = [] if brief else (yield from kata_speed(seed=seed))
     if len(scores) > 1:
         scores.append(mean_scores(scores))
@@ -86,6 +97,7 @@ def alignment(
         tables.append(_warp_table(followed))
     tables.append(_speed_table(speed))
     tables += kata_tables(recovered, peers, boundaries)
+    tables += [event_table(met)] if met else []
     record: dict[str, Any] = {
         "alignment": {
             "quality": [one.to_json() for one in scores],
@@ -95,6 +107,7 @@ def alignment(
             "speed": [row.to_json() for row in speed],
             "recovered": [row.to_json() for row in recovered],
             "boundaries": [row.to_json() for row in boundaries],
+            "events": [row.to_json() for row in met],
             "peers": [row.to_json() for row in peers],
         }
     }
