@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from mocapstudio.cli.alignment_options import Reference, ReferenceLabels
 from mocapstudio.cli.errors import complain
 from mocapstudio.cli.take_options import TakeOptions, with_take_options
 from mocapstudio.motion.errors import FileError
 
 if TYPE_CHECKING:
     from mocapstudio.cli.take_files import Workload
+    from mocapstudio.comparison.labels import Labels
     from mocapstudio.comparison.live import LiveAlignment, LiveState
     from mocapstudio.formats import Recording
 
@@ -24,7 +26,7 @@ STANDARD_INPUT = Path("-")
 
 @with_take_options
 def align(
-    reference: Annotated[Path, typer.Argument(metavar="REFERENCE", help="What is aligned with.")],
+    reference: Reference,
     stream: Annotated[
         Path,
         typer.Argument(
@@ -37,10 +39,7 @@ def align(
         Path | None,
         typer.Option("--weights", metavar="FILE", help="What train-weights wrote."),
     ] = None,
-    labels: Annotated[
-        Path | None,
-        typer.Option("--labels", metavar="FILE", help="Segments of the reference (JSON)."),
-    ] = None,
+    labels: ReferenceLabels = None,
     wait: Annotated[
         bool,
         typer.Option(
@@ -65,7 +64,6 @@ def align(
     joints of the stream and what they are called in the reference.
     """
     from mocapstudio.cli.take_files import Workload
-    from mocapstudio.comparison.labels import labels_of, read_labels
     from mocapstudio.comparison.live import played
     from mocapstudio.comparison.live_setup import live_alignment
     from mocapstudio.comparison.weights import read_weights
@@ -73,11 +71,7 @@ def align(
     work = Workload(reading)
     learnt = read_weights(weights) if weights is not None else None
     take = _one(work, reference)
-    known = None
-    if labels is not None:
-        known = labels_of(take.name, read_labels(labels))
-        if known is None:
-            raise FileError(labels, f"has no labels of {take.name}")
+    known = _labels_of(take, labels)
     if stream == STANDARD_INPUT:
         live = live_alignment(take, (), reading.fps, learnt, known, wait=wait, paper=paper)
         failed = _show(_from_input(live, reading.joint_map))
@@ -97,6 +91,17 @@ def _one(work: Workload, path: Path) -> Recording:
             file=sys.stderr,
         )
     return found[0]
+
+
+def _labels_of(take: Recording, path: Path | None) -> Labels | None:
+    from mocapstudio.comparison.labels import labels_of, read_labels
+
+    if path is None:
+        return None
+    known = labels_of(take.name, read_labels(path))
+    if known is None:
+        raise FileError(path, f"has no labels of {take.name}")
+    return known
 
 
 def renamed(take: Recording, joint_map: Path | None) -> Recording:

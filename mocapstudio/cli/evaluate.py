@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -12,10 +13,11 @@ from mocapstudio.cli.output import JsonPath, check_writable, write_json
 from mocapstudio.motion.errors import MocapError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Generator, Sequence
 
     from mocapstudio.evaluation.cases import ContextSize
     from mocapstudio.evaluation.reports import Report
+    from mocapstudio.motion.progress import Progress
 
 
 _WIDTH = 160
@@ -81,31 +83,12 @@ def evaluate(
     tuned, was tuned on other takes than those measured.
     """
     from mocapstudio.cli.progress import run
-    from mocapstudio.evaluation import reports
 
     check_writable(json_path)
     check_writable(html_path)
-    _check_use(what, truth, cleaned, labels)
-    sizes = _sizes(context)
-    if what is What.ALIGNMENT:
-        from mocapstudio.evaluation import alignment_report
-
-        work = alignment_report.alignment(data, labels or (), seed, limit, brief=brief)
-    elif what is What.CONTACTS:
-        from mocapstudio.evaluation import contacts_report
-
-        work = contacts_report.contacts(data, truth, seed, limit)
-    elif truth is not None:
-        work = reports.against_labels(data, truth, sizes[-1])
-    elif cleaned is not None:
-        work = reports.against_cleaned(data, cleaned, sizes[-1], repair=what is What.REPAIR)
-    elif what is What.DETECTION:
-        work = reports.detection(data, sizes, seed, limit, brief=brief)
-    elif what is What.REPAIR:
-        work = reports.repair(data, sizes[-1], seed, limit)
-    else:
-        work = reports.speed(data, seed, long=not brief)
-    report = run(work, f"evaluate {what.value}")
+    asked = _Asked(what, data, truth, cleaned, labels or [], _sizes(context), seed, limit, brief)
+    asked.check()
+    report = run(asked.work(), f"evaluate {what.value}")
     if json_path is None:
         _show(report)
     write_json(_with_provenance(report.record, data, seed), json_path)
@@ -113,19 +96,56 @@ def evaluate(
         _write(report.html, html_path)
 
 
-def _check_use(
-    what: What, truth: Path | None, cleaned: Path | None, labels: list[Path] | None
-) -> None:
-    if truth is not None and cleaned is not None:
-        raise MocapError("--truth and --cleaned exclude each other")
-    if cleaned is not None and what in {What.SPEED, What.ALIGNMENT}:
-        raise MocapError(f"{what.value} has no cleaned take to be scored against")
-    if cleaned is not None and what is What.CONTACTS:
-        raise MocapError("contacts are measured against --truth")
-    if truth is not None and what not in {What.DETECTION, What.CONTACTS}:
-        raise MocapError("labels tell where errors are, not what would be right: use --cleaned")
-    if labels and what is not What.ALIGNMENT:
-        raise MocapError("--labels are of segments, which only alignment is measured by")
+@dataclass(frozen=True)
+class _Asked:
+    """What is to be measured, on what, against what."""
+
+    what: What
+    data: Sequence[Path]
+    truth: Path | None
+    cleaned: Path | None
+    labels: Sequence[Path]
+    sizes: Sequence[ContextSize]
+    seed: int
+    limit: int
+    brief: bool
+
+    def check(self) -> None:
+        what = self.what
+        if self.truth is not None and self.cleaned is not None:
+            raise MocapError("--truth and --cleaned exclude each other")
+        if self.cleaned is not None and what in {What.SPEED, What.ALIGNMENT}:
+            raise MocapError(f"{what.value} has no cleaned take to be scored against")
+        if self.cleaned is not None and what is What.CONTACTS:
+            raise MocapError("contacts are measured against --truth")
+        if self.truth is not None and what not in {What.DETECTION, What.CONTACTS}:
+            raise MocapError("labels tell where errors are, not what would be right: use --cleaned")
+        if self.labels and what is not What.ALIGNMENT:
+            raise MocapError("--labels are of segments, which only alignment is measured by")
+
+    def work(self) -> Generator[Progress, None, Report]:
+        if self.what is What.ALIGNMENT:
+            from mocapstudio.evaluation import alignment_report
+
+            return alignment_report.alignment(
+                self.data, self.labels, self.seed, self.limit, brief=self.brief
+            )
+        if self.what is What.CONTACTS:
+            from mocapstudio.evaluation import contacts_report
+
+            return contacts_report.contacts(self.data, self.truth, self.seed, self.limit)
+        from mocapstudio.evaluation import reports
+
+        if self.truth is not None:
+            return reports.against_labels(self.data, self.truth, self.sizes[-1])
+        if self.cleaned is not None:
+            repair = self.what is What.REPAIR
+            return reports.against_cleaned(self.data, self.cleaned, self.sizes[-1], repair=repair)
+        if self.what is What.DETECTION:
+            return reports.detection(self.data, self.sizes, self.seed, self.limit, brief=self.brief)
+        if self.what is What.REPAIR:
+            return reports.repair(self.data, self.sizes[-1], self.seed, self.limit)
+        return reports.speed(self.data, self.seed, long=not self.brief)
 
 
 def _sizes(context: list[Size] | None) -> Sequence[ContextSize]:

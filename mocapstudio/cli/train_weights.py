@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from mocapstudio.cli.alignment_options import Reference, TakeLabels
 from mocapstudio.cli.output import JsonPath, check_writable, write_json
 from mocapstudio.cli.take_options import TakeOptions, with_take_options
 from mocapstudio.motion.errors import FileError, ParameterError
@@ -23,16 +24,11 @@ if TYPE_CHECKING:
 
 @with_take_options
 def train_weights(
-    reference: Annotated[Path, typer.Argument(metavar="REFERENCE", help="What is aligned with.")],
+    reference: Reference,
     takes: Annotated[
         list[Path], typer.Argument(metavar="TAKE...", help="Performances of it: files or folders.")
     ],
-    labels: Annotated[
-        list[Path],
-        typer.Option(
-            "--labels", metavar="FILE", help="Segments of takes and reference (JSON); repeatable."
-        ),
-    ],
+    labels: TakeLabels,
     out: Annotated[Path, typer.Option("-o", "--out", metavar="WEIGHTS", help="File to write.")],
     performer: Annotated[
         str | None,

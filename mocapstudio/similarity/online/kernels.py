@@ -147,8 +147,7 @@ def next_row(
             traced = SKIP
         now[j], lengths[j] = total, length
         steps[j >> 2] |= np.uint8((traced if by_length else step) << (2 * (j & 3)))
-        if total < now[end]:
-            end = j
+        end = j if total < now[end] else end
     return end
 
 
