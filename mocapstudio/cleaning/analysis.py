@@ -11,6 +11,7 @@ from mocapstudio.cleaning.flags import find_flags
 from mocapstudio.cleaning.model import DigressionMap, Flag
 from mocapstudio.cleaning.own_rate import OwnRate
 from mocapstudio.cleaning.parameters import DetectionParameters
+from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.take import Take
 from mocapstudio.similarity.texture import MotionTexture
 from mocapstudio.similarity.words import Corpus
@@ -40,6 +41,9 @@ class Analysis:
         Whether the learnt decision drew the map.
     unanalysed
         Names of joints that were left out: fingers, eyes, or unknown to the context.
+    doubts
+        Spans of each take of the context that look wrong themselves: they serve no repair. Empty
+        where nothing was learnt.
     """
 
     take: Take
@@ -51,6 +55,7 @@ class Analysis:
     own_rate: OwnRate
     unanalysed: tuple[str, ...]
     learnt: bool = False
+    doubts: tuple[tuple[Declared, ...], ...] = ()
 
     @property
     def texture(self) -> MotionTexture:

@@ -89,7 +89,10 @@ def detect(
     flags = find_flags(take, digression, rates, parameters.threshold)
     left_out = tuple(name for name in take.skeleton.names if name not in joints)
     others = tuple(context)
-    return Analysis(take, others, parameters, corpus, digression, flags, rates, left_out, learnt)
+    doubts = decision.doubted(others) if decision is not None and learnt else ()
+    return Analysis(
+        take, others, parameters, corpus, digression, flags, rates, left_out, learnt, doubts
+    )
 
 
 def _search(

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from mocapstudio.cleaning.analysis import Analysis
 from mocapstudio.cleaning.model import Flag
+from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.facing import ROOT_ROWS
 from mocapstudio.motion.progress import Progress, run
 from mocapstudio.motion.take import Take
@@ -172,8 +173,8 @@ def _measured(analysis: Analysis, flag: Flag) -> Generator[Progress, None, Dista
     return DistanceProfile(window, degrees, ends, barred, found[:count], takes)
 
 
-def texture_span(texture: MotionTexture, flag: Flag) -> tuple[int, int]:
-    """Half-open span of texture frames that a flag covers, at least one."""
+def texture_span(texture: MotionTexture, flag: Flag | Declared) -> tuple[int, int]:
+    """Half-open span of texture frames that a span of own frames covers, at least one."""
     start = int(np.floor((flag.start - texture.start) / texture.frames_each))
     end = int(np.ceil((flag.end - texture.start) / texture.frames_each))
     start = min(max(start, 0), len(texture) - 1)
@@ -211,13 +212,19 @@ def _pose_distances(analysis: Analysis, flag: Flag, window: Window, first: int, 
 
 
 def _barred(analysis: Analysis, flag: Flag, words: int, window: Window) -> Flags:
-    """Words that straddle takes, overlap the flagged span itself, or are flagged themselves."""
+    """Words that straddle takes, overlap the flagged span itself, or look wrong themselves."""
     corpus, texture, longest = analysis.corpus, analysis.texture, window.longest
     bad = np.zeros(corpus.frames + 1, dtype=bool)
     bad[window.low : window.high] = True
     for other in analysis.flags:
         if set(other.joints) & set(flag.joints) or other.joint in ROOT_ROWS:
             bad[slice(*texture_span(texture, other))] = True
+    for at, doubts in enumerate(analysis.doubts, start=1):
+        first, one = int(corpus.starts[at]), corpus.textures[at]
+        for doubt in doubts:
+            if doubt.row in flag.joints or doubt.row in ROOT_ROWS:
+                low, high = texture_span(one, doubt)
+                bad[first + low : first + high] = True
     count = np.concatenate([[0], np.cumsum(bad)])
     barred = np.asarray(count[longest : longest + words] - count[:words] > 0)
     for start in corpus.starts[1:]:

@@ -22,8 +22,8 @@ def neighbours(analysis: Analysis, flag: Flag) -> tuple[Neighbour, ...]:
     Returns
     -------
     Neighbours at their own takes' rates, each as long as the flagged span, time-warped. Spans of
-    the analysed take that are flagged on one of the same joints are never neighbours. Empty where
-    nothing long enough exists.
+    the analysed take that are flagged on one of the same joints, and such of the context that look
+    wrong themselves, are never neighbours. Empty where nothing long enough exists.
     """
     return _neighbours(analysis, flag)
 

@@ -14,6 +14,7 @@ from mocapstudio.cleaning.model import Flag, Kind
 from mocapstudio.cleaning.parameters import DetectionParameters
 from mocapstudio.cleaning.reasons import neighbours
 from mocapstudio.motion import rotations as rot
+from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.progress import run
 from mocapstudio.motion.take import Take
 
@@ -147,3 +148,17 @@ def test_the_donor_shows_what_the_joint_should_do(take: Take, context: tuple[Tak
         at = np.linspace(n.start, n.end - 1, 30)
         clean = take.rotations[100:130, column]
         assert np.rad2deg(rot.angle(donor[at.round().astype(int)], clean)).mean() < 12
+
+
+def test_what_looks_wrong_in_the_context_is_no_neighbour() -> None:
+    take = turned(walking(3.0, 30, seed=0), "LeftArm", 40, 50, 60)
+    analysis = run(detect(take, [walking(6.0, 30, seed=1)]))
+    one = flag("LeftArm", 40, 50)
+    best = next(n for n in neighbours(analysis, one) if n.index == 1)
+    for row, barred in (("LeftArm", True), ("root position", True), ("Head", False)):
+        doubts = ((Declared(row, best.start, best.end),),)
+        found = neighbours(replace(analysis, doubts=doubts), one)
+        assert (best in found) is not barred
+        assert not barred or not any(
+            n.index == 1 and n.start < best.end and n.end > best.start for n in found
+        )

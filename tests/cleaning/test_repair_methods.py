@@ -21,6 +21,7 @@ from mocapstudio.cleaning.repair.ranges import joint_ranges
 from mocapstudio.cleaning.repair.regression import unwrapped
 from mocapstudio.cleaning.repair.swap import MANNERS, exchanged
 from mocapstudio.motion import rotations as rot
+from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.facing import ROOT_HEADING, ROOT_POSITION, split_heading
 from mocapstudio.motion.kinematics import take_pose
 from mocapstudio.motion.progress import run
@@ -147,6 +148,28 @@ def test_no_repair_leaves_the_ranges_that_were_seen(take: Take, context: tuple[T
         q = result.rotations[100:160, take.skeleton.index[joint]]
         vectors = rot.to_rotation_vector(rot.multiply(rot.conjugate(known.centre[column]), q))
         assert np.all(vectors > low - 1e-6) and np.all(vectors < high + 1e-6)
+
+
+def test_errors_of_the_context_teach_the_repair_nothing(
+    take: Take, context: tuple[Take, ...]
+) -> None:
+    joint = "LeftForeArm"
+    first, *others = context
+    analysis = run(detect(take, [turned(first, joint, 30, 60, 80), *others]))
+    clean = run(detect(take, context))
+    doubts = ((Declared(joint, 28, 62),), *(() for _ in others))
+    one = flag(joint, 100, 130)
+    ranges, spreads = [], []
+    for each in (clean, analysis, replace(analysis, doubts=doubts)):
+        known = material(each, one, take)
+        column = known.joints.index(joint)
+        ranges.append(joint_ranges(known, each.context, column, each.doubts))
+        assert known.known is not None
+        spreads.append(np.diag(known.known.covariance)[3 * column : 3 * column + 3].sum())
+    # Poses are measured from the mean pose, which an error shifts by little.
+    assert np.abs(ranges[1] - ranges[0]).max() > np.deg2rad(20)
+    assert np.abs(ranges[2] - ranges[0]).max() < np.deg2rad(5)
+    assert spreads[1] > 2 * spreads[0] > 1.6 * spreads[2]
 
 
 @pytest.mark.parametrize("wider", [0, 1])

@@ -7,7 +7,7 @@ into it, half of the time with the nearest takes left out, so that novelty is le
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,6 +21,7 @@ from mocapstudio.cleaning.decision.spoiling import Anatomy, spoil
 from mocapstudio.cleaning.decision.surroundings import anatomy_of, mean_pose, moments_of
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.progress import Progress
+from mocapstudio.motion.recording import motion_digest
 from mocapstudio.motion.take import Take
 from mocapstudio.similarity.texture import (
     BodyMotion,
@@ -36,6 +37,7 @@ FRAMES_WANTED = 20_000
 _VARIANTS = (2, 16)
 _LEAST_USUAL = np.array([2.0, 2.0, 2.0, 0.1, 0.1], dtype=np.float32)
 _MOST_DROPPED = 10
+_IN_UNITS = [COLUMN[f"{name} usual"] for name in USUAL]
 
 
 class TooLittleToLearnError(MocapError):
@@ -44,8 +46,9 @@ class TooLittleToLearnError(MocapError):
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """One take of the context and what it is compared with."""
+    """One take of the context, by its `motion_digest`, and what it is compared with."""
 
+    digest: str
     motion: BodyMotion
     texture: MotionTexture
     around: Surroundings
@@ -79,12 +82,15 @@ class Made:
         Names of the m compared joints.
     usual
         (5, m) what is usual for clean takes, see `features.USUAL`.
+    seen
+        What is seen of each take as it came; None where it is too short.
     """
 
     joints: tuple[str, ...]
     anatomy: Anatomy
     takes: tuple[Known, ...]
     usual: F32
+    seen: tuple[Seen | None, ...]
     examples: tuple[Example, ...]
 
 
@@ -115,15 +121,18 @@ def examples_of(
     yield Progress(0.0, "preparing the context")
     names = tuple(joints) if joints is not None else comparable_joints(context[0], context[1:])
     anatomy = anatomy_of(context[0].skeleton, names)
-    motions = [body_motion(take, names) for take in context]
-    motions = [one for one in motions if len(texture_of(one)) >= LEAST_FRAMES]
+    motions = {motion_digest(take): body_motion(take, names) for take in context}
+    motions = {k: one for k, one in motions.items() if len(texture_of(one)) >= LEAST_FRAMES}
     if not motions:
         raise TooLittleToLearnError("no take of the context is long enough to learn from")
     takes = _each_without_itself(motions, anatomy)
-    usual = yield from _usual(takes)
+    plainly = yield from _seen(takes)
+    usual = _usual(plainly)
+    seen = tuple(None if one is None else _in_units(one, usual) for one in plainly)
     takes = [replace(one, around=replace(one.around, usual=usual)) for one in takes]
     spoilt = yield from _spoilt(takes, anatomy, rng, frames_wanted)
-    return Made(names, anatomy, tuple(takes), usual, tuple(_without_breaks(spoilt, takes)))
+    right = tuple(_without_breaks(spoilt, takes))
+    return Made(names, anatomy, tuple(takes), usual, seen, right)
 
 
 def _without_breaks(examples: Sequence[Example], takes: Sequence[Known]) -> list[Example]:
@@ -133,32 +142,44 @@ def _without_breaks(examples: Sequence[Example], takes: Sequence[Known]) -> list
     return [one.doubting(doubts[one.take]) for one in examples]
 
 
-def _each_without_itself(motions: Sequence[BodyMotion], anatomy: Anatomy) -> list[Known]:
-    textures = [texture_of(one) for one in motions]
+def _each_without_itself(motions: Mapping[str, BodyMotion], anatomy: Anatomy) -> list[Known]:
+    textures = [texture_of(one) for one in motions.values()]
     centre = mean_pose(textures)
     moments = [moments_of(one, centre) for one in textures]
     total = moments[0]
     for one in moments[1:]:
         total = total + one
     takes = []
-    for i, (motion, texture) in enumerate(zip(motions, textures, strict=True)):
+    for i, ((digest, motion), texture) in enumerate(zip(motions.items(), textures, strict=True)):
         others = [other for k, other in enumerate(textures) if k != i]
         rest = total - moments[i] if others else total
-        takes.append(Known(motion, texture, Surroundings(others, rest, centre, anatomy.limb)))
+        takes.append(
+            Known(digest, motion, texture, Surroundings(others, rest, centre, anatomy.limb))
+        )
     return takes
 
 
-def _usual(takes: Sequence[Known]) -> Generator[Progress, None, F32]:
-    """(5, m) 98 % quantiles of clean takes' own residuals, every take without itself."""
-    columns = [COLUMN[f"{name} usual"] for name in USUAL]
+def _seen(takes: Sequence[Known]) -> Generator[Progress, None, list[Seen | None]]:
+    """Look at all takes as they came, every take without itself."""
     found = []
     for i, one in enumerate(takes):
         yield Progress(0.08 + 0.15 * i / len(takes), "measuring what is usual")
-        seen = examine(one.motion, one.around)
-        if seen is not None:
-            found.append(seen.joints[..., columns])
+        found.append(examine(one.motion, one.around))
+    return found
+
+
+def _usual(seen: Sequence[Seen | None]) -> F32:
+    """(5, m) 98 % quantiles of clean takes' own residuals."""
+    found = [one.joints[..., _IN_UNITS] for one in seen if one is not None]
     quantiles = np.nanquantile(np.concatenate(found), 0.98, axis=0).T
     return np.asarray(np.maximum(np.nan_to_num(quantiles), _LEAST_USUAL[:, None]), dtype=np.float32)
+
+
+def _in_units(seen: Seen, usual: F32) -> Seen:
+    """Give residuals that were measured as they are in units of what is usual."""
+    joints = seen.joints.copy()
+    joints[..., _IN_UNITS] /= usual.T
+    return replace(seen, joints=joints)
 
 
 def _spoilt(

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,9 @@ from mocapstudio.cleaning.decision.root_features import root_features
 from mocapstudio.cleaning.decision.spans import judged
 from mocapstudio.cleaning.decision.surroundings import moments_of
 from mocapstudio.cleaning.own_rate import OwnRate
+from mocapstudio.motion.declared import Declared
+from mocapstudio.motion.recording import motion_digest
+from mocapstudio.motion.take import Take
 from mocapstudio.similarity.texture import BodyMotion, MotionTexture, texture_of
 
 F32 = NDArray[np.float32]
@@ -98,12 +101,21 @@ class Decision:
         frames (see `halves`) and judges the other.
     spans
         Trees that judge candidate spans.
+    doubts
+        Spans of the context's own takes that look wrong, by `motion_digest`: they serve no repair.
     """
 
     joints: tuple[str, ...]
     usual: F32
     judges: tuple[Bench, ...]
     spans: Forest
+    doubts: Mapping[str, tuple[Declared, ...]] = field(default_factory=dict)
+
+    def doubted(self, context: Iterable[Take]) -> tuple[tuple[Declared, ...], ...]:
+        """Spans that look wrong in each take of a context."""
+        if not self.doubts:
+            return ()
+        return tuple(self.doubts.get(motion_digest(take), ()) for take in context)
 
     def probabilities(self, motion: BodyMotion, around: Surroundings) -> tuple[F32, F32]:
         """Decide about every row and frame of a motion at 24 fps.

@@ -9,7 +9,7 @@ import struct
 import tempfile
 import zipfile
 import zlib
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,11 +20,13 @@ from mocapstudio.cleaning.decision.forest import Forest
 from mocapstudio.cleaning.decision.general import general_judge
 from mocapstudio.cleaning.decision.model import Bench, Decision, Judge
 from mocapstudio.cleaning.decision.training import learn
+from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.progress import Progress
+from mocapstudio.motion.recording import motion_digest
 from mocapstudio.motion.take import Take
 from mocapstudio.similarity.texture import comparable_joints
 
-_VERSION = 11
+_VERSION = 12
 _MOST_KEPT = 64
 _DAMAGED = (
     OSError, EOFError, KeyError, ValueError, RuntimeError, MemoryError,
@@ -71,19 +73,9 @@ def default_folder() -> Path:
 
 def key(context: Sequence[Take], joints: Sequence[str]) -> str:
     """Name of a decision: a digest of motions (in any order), joints and version."""
-    digests = sorted(_digest(take) for take in context)
+    digests = sorted(motion_digest(take) for take in context)
     text = "\n".join([str(_VERSION), *joints, *digests])
     return hashlib.sha256(text.encode()).hexdigest()[:32]
-
-
-def _digest(take: Take) -> str:
-    skeleton = take.skeleton
-    told = (take.rate, take.span, take.translated, skeleton.names, skeleton.parents.tolist())
-    found = hashlib.sha256(repr(told).encode())
-    found.update(np.ascontiguousarray(skeleton.offsets, dtype=np.float32).tobytes())
-    found.update(np.ascontiguousarray(take.rotations, dtype=np.float32).tobytes())
-    found.update(np.ascontiguousarray(take.translations, dtype=np.float32).tobytes())
-    return found.hexdigest()
 
 
 def save(decision: Decision, path: Path) -> None:
@@ -96,7 +88,7 @@ def save(decision: Decision, path: Path) -> None:
             for i, judge in enumerate(decision.judges):
                 arrays |= judge.own.arrays(f" {i} ")
                 arrays["share"] = np.array(judge.share)
-            arrays |= decision.spans.arrays("spans ")
+            arrays |= decision.spans.arrays("spans ") | _of_doubts(decision.doubts)
             np.savez_compressed(out, **arrays)
         Path(name).replace(path)
     except BaseException:
@@ -114,9 +106,26 @@ def load(path: Path) -> Decision | None:
             )
             names = tuple(str(name) for name in arrays["joints"])
             spans = Forest.from_arrays(arrays, "spans ")
-            return Decision(names, arrays["usual"], judges, spans)
+            return Decision(names, arrays["usual"], judges, spans, _doubts_of(arrays))
     except _DAMAGED:
         return None
+
+
+def _of_doubts(doubts: Mapping[str, Sequence[Declared]]) -> dict[str, Any]:
+    rows = [(digest, one) for digest, spans in doubts.items() for one in spans]
+    return {
+        "doubt take": np.array([digest for digest, _ in rows], dtype=str),
+        "doubt row": np.array([one.row for _, one in rows], dtype=str),
+        "doubt span": np.array([(one.start, one.end) for _, one in rows], np.int64).reshape(-1, 2),
+    }
+
+
+def _doubts_of(arrays: Any) -> dict[str, tuple[Declared, ...]]:
+    columns = (arrays[f"doubt {name}"].tolist() for name in ("take", "row", "span"))
+    doubts: dict[str, tuple[Declared, ...]] = {}
+    for digest, row, (start, end) in zip(*columns, strict=True):
+        doubts[digest] = (*doubts.get(digest, ()), Declared(row, start, end))
+    return doubts
 
 
 def _forget_oldest(folder: Path) -> None:

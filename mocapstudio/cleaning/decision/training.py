@@ -21,19 +21,25 @@ import numpy as np
 from mocapstudio.cleaning.decision.examples import (
     Example,
     Known,
+    Made,
     TooLittleToLearnError,
     examples_of,
 )
 from mocapstudio.cleaning.decision.features import windows
+from mocapstudio.cleaning.decision.forest import Forest
 from mocapstudio.cleaning.decision.general import general_judge, share_of_general
 from mocapstudio.cleaning.decision.growing import Rows, Size, grow
 from mocapstudio.cleaning.decision.model import Bench, Decision, Judge, crossed, examine, halves
-from mocapstudio.cleaning.decision.spans import candidates, labels_of, span_features
+from mocapstudio.cleaning.decision.spans import candidates, judged, labels_of, span_features
 from mocapstudio.cleaning.decision.spoiling import Anatomy
+from mocapstudio.motion.declared import Declared
+from mocapstudio.motion.facing import ROOT_ROWS
+from mocapstudio.motion.gaps import runs
 from mocapstudio.motion.progress import Progress, scaled
 from mocapstudio.motion.take import Take
 
 _SUSPECT = 0.3
+_DOUBTFUL = 0.5
 
 
 _WHOLE, _HALF = Size(150, 31, 0.1, 40), Size(80, 31, 0.15, 40)
@@ -74,7 +80,28 @@ def learn(
     yield Progress(0.95, "learning the decision")
     if not alone:
         whole = Bench(_fitted(examples, rng, _WHOLE), general_judge(), share)
-    return Decision(made.joints, made.usual, judges if alone else (whole,), spans)
+        return Decision(made.joints, made.usual, (whole,), spans, _doubts(made, judges, spans))
+    return Decision(made.joints, made.usual, judges, spans)
+
+
+def _doubts(
+    made: Made, judges: tuple[Bench, Bench], spans: Forest
+) -> dict[str, tuple[Declared, ...]]:
+    """Spans of the context itself that those who did not learn from them call wrong."""
+    found = {}
+    rows = (*made.joints, *ROOT_ROWS)
+    for i, (one, seen) in enumerate(zip(made.takes, made.seen, strict=True)):
+        if seen is None:
+            continue
+        frame = one.texture.frame
+        first = crossed(judges, seen, halves(len(seen.joints), i, len(made.takes)))
+        probability = judged(first, seen.joints, made.anatomy.limb, spans)
+        found[one.digest] = tuple(
+            Declared(rows[row], round(frame(start)), round(frame(end - 1)) + 1)
+            for row in range(probability.shape[1])
+            for start, end in runs(probability[:, row] > _DOUBTFUL)
+        )
+    return found
 
 
 def _judges(

@@ -118,7 +118,7 @@ def _proposal(
     hips = take.skeleton.names[topology(take.skeleton).hips]
     for i, ((name, (low, high)), one) in enumerate(zip(spans.items(), found, strict=True)):
         column = known.joints.index(name)
-        ranges = joint_ranges(known, analysis.context, column)
+        ranges = joint_ranges(known, analysis.context, column, analysis.doubts)
         rotations = within(known, column, one, ranges)
         local = hips_rotation(take, rotations, low, high) if name == hips else rotations
         block[low - start : high - start, i] = local

@@ -21,6 +21,7 @@ from mocapstudio.cleaning.decision.gaussian import (
     rotation_vectors,
     stacked,
 )
+from mocapstudio.cleaning.distance_profile import texture_span
 from mocapstudio.cleaning.model import Flag
 from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.declared import Declared
@@ -37,11 +38,14 @@ from mocapstudio.similarity.texture import (
 
 F64 = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+Doubts = tuple[tuple[Declared, ...], ...]
 
 WALK = 3
 """Columns behind the joints': forward and sideways speed and turning of the hips."""
 _WALK_SCALE = 0.3
 _REPAIRED = 0.5
+_LEAST = 48
+"""Frames at 24 fps that a context has to have left without what looks wrong."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +107,9 @@ def material(analysis: Analysis, flag: Flag, take: Take) -> Material:
     others = [one for one in analysis.flags if one.id != flag.id]
     open_ = [one for one in others if not is_repaired(analysis.take, take, one)]
     wrong = wrong_rows(joints, len(motion), motion.start, [flag, *open_])
-    known = context_moments(analysis.context, joints) if analysis.context else None
+    known = None
+    if analysis.context:
+        known = context_moments(analysis.context, joints, analysis.doubts)
     values = np.hstack([_vectors(motion, centre), walk_of(analysis.texture, motion)])
     return Material(take, motion, centre, values, wrong, analysis.texture, known)
 
@@ -145,14 +151,32 @@ def walk_of(texture: MotionTexture, motion: BodyMotion) -> F64:
 
 
 @lru_cache(maxsize=8)
-def context_moments(context: tuple[Take, ...], joints: tuple[str, ...]) -> Moments:
-    """Moments of all takes of a context, stacked values at 24 fps."""
+def context_moments(
+    context: tuple[Take, ...], joints: tuple[str, ...], doubts: Doubts = ()
+) -> Moments:
+    """Moments of all takes of a context, stacked values at 24 fps, without what looks wrong."""
     centre = centre_of(context, joints)
-    parts = [moments(stacked(texture_values(motion_texture(t, joints), centre))) for t in context]
+    parts = []
+    for at, take in enumerate(context):
+        texture = motion_texture(take, joints)
+        wrong = doubted(texture, doubts[at] if doubts else ()).any(axis=1, keepdims=True)
+        right = ~stacked(np.asarray(wrong, dtype=np.float64)).any(axis=1)
+        parts.append(moments(stacked(texture_values(texture, centre))[right]))
     total = parts[0]
     for one in parts[1:]:
         total = total + one
-    return total
+    # Where everything is doubted, that tells nothing.
+    return total if total.count >= _LEAST or not doubts else context_moments(context, joints)
+
+
+def doubted(texture: MotionTexture, doubts: Sequence[Declared]) -> Mask:
+    """(T, m + 2) texture frames at which rows look wrong themselves."""
+    rows = [*texture.joints, *ROOT_ROWS]
+    wrong = np.zeros((len(texture), len(rows)), dtype=bool)
+    for one in doubts:
+        if one.row in rows:
+            wrong[slice(*texture_span(texture, one)), rows.index(one.row)] = True
+    return wrong
 
 
 def texture_values(texture: MotionTexture, centre: F64) -> F64:

@@ -250,3 +250,13 @@ def test_pooling_keeps_the_highest_value_of_every_frame() -> None:
 def test_what_is_usual_is_named_for_every_joint(decision: Decision) -> None:
     assert decision.usual.shape == (len(USUAL), len(decision.joints))
     assert np.all(decision.usual > 0)
+
+
+def test_errors_of_the_context_are_doubted(decision: Decision) -> None:
+    """What is wrong in one take is told by the others; clean walks hardly raise any."""
+    dirty = turned(CONTEXT[1], "LeftForeArm", 60, 85, 60.0)
+    doubts = run(learn([CONTEXT[0], dirty, CONTEXT[2]])).doubted([dirty, CONTEXT[0]])
+    (found,) = [one for one in doubts[0] if one.row == "LeftForeArm"]
+    assert found.start < 65 and found.end > 80 and found.end - found.start < 50
+    clean = decision.doubted(CONTEXT)
+    assert sum(len(one) for one in clean) <= 2

@@ -14,6 +14,7 @@ from mocapstudio.cleaning.decision import store
 from mocapstudio.cleaning.decision.forest import Forest
 from mocapstudio.cleaning.decision.general import general_judge
 from mocapstudio.cleaning.decision.model import Bench, Decision, Judge
+from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.take import Take
 
 JOINTS = ("Hips", "Spine", "Head")
@@ -38,7 +39,11 @@ def decision(judges: int) -> Decision:
     usual = np.arange(15, dtype=np.float32).reshape(5, 3)
     own = (Judge(forest(2 * i), forest(2 * i + 1)) for i in range(judges))
     both = tuple(Bench(one, general_judge(), 0.25) for one in own)
-    return Decision(JOINTS, usual, both, forest(9))
+    doubts = {
+        "a": (Declared("Head", 3, 9), Declared("Spine", 0, 2)),
+        "b": (Declared("Hips", 1, 2),),
+    }
+    return Decision(JOINTS, usual, both, forest(9), doubts if judges == 1 else {})
 
 
 def forests(one: Decision) -> list[Forest]:
@@ -53,6 +58,7 @@ def test_what_is_saved_is_loaded(tmp_path: Path, judges: int) -> None:
     again = store.load(path)
     assert again is not None
     assert again.joints == JOINTS
+    assert again.doubts == kept.doubts
     np.testing.assert_array_equal(again.usual, kept.usual)
     assert [one.share for one in again.judges] == judges * [0.25]
     rows = np.random.default_rng(0).normal(size=(50, 3)).astype(np.float32)
