@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from mocapstudio.gui.command import SEPARATOR, Command
 from mocapstudio.gui.compare.commands import COMPARE, SEGMENTS
+from mocapstudio.gui.compare.live_commands import LIVE
 from mocapstudio.gui.contacts.commands import CONTACTS
 from mocapstudio.gui.workspaces.registry import WORKSPACES
 
@@ -168,6 +169,7 @@ MENUS = {
     "Co&ntacts": CONTACTS,
     "&Compare": COMPARE,
     "&Segments": SEGMENTS,
+    "&Live": LIVE,
     "&Play": PLAY,
     "&View": VIEW,
     "&Workspace": WORKSPACE,
@@ -176,7 +178,7 @@ MENUS = {
 
 HOMES = {"Fla&g": ("review",), "&Neighbour": ("review",), "&Analysis": ("review",),
          "Co&ntacts": ("contacts",),
-         "&Compare": ("compare",), "&Segments": ("compare",)}  # fmt: skip
+         "&Compare": ("compare",), "&Segments": ("compare",), "&Live": ("compare",)}  # fmt: skip
 """Menus that belong to some workspaces only, by title."""
 
 COMMANDS = {one.name: one for menu in MENUS.values() for one in menu if one is not SEPARATOR}

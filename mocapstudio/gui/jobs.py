@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import contextlib
 import os
+import queue
+import select
 import sys
 import threading
 import time
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,6 +24,8 @@ from mocapstudio.motion.progress import Progress
 Work = Generator[Progress, None, Any]
 _REPORT_EVERY = 0.05
 _SETTLE = 0.5
+_LOOK_UP = 0.1
+_LONGEST = 1 << 20
 
 
 class Job(QObject):
@@ -203,3 +207,80 @@ def _yield_to_the_desk() -> None:
     # Linux schedules threads one by one; elsewhere the setting would hit the whole process.
     if sys.platform.startswith("linux"):
         os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), 10)
+
+
+class Lines:
+    """Lines that come in by a pipe, read ahead by a thread of their own.
+
+    At most `most` lines wait to be taken; then the sender waits. Nothing here ever does.
+
+    Parameters
+    ----------
+    descriptor
+        What is read from; it stays open.
+    most
+        How many lines may wait.
+    """
+
+    def __init__(self, descriptor: int, most: int = 256) -> None:
+        self._descriptor = descriptor
+        self._waiting: queue.Queue[bytes] = queue.Queue(most)
+        self._stop, self._read_all = threading.Event(), threading.Event()
+        # What blocks in a read must not keep the process from ending.
+        self._thread = threading.Thread(target=self._run, name="lines", daemon=True)
+        self._thread.start()
+
+    @property
+    def ended(self) -> bool:
+        """Whether the sender has closed the pipe and every line was taken."""
+        return self._read_all.is_set() and self._waiting.empty()
+
+    @property
+    def running(self) -> bool:
+        """Whether the thread still reads."""
+        return self._thread.is_alive()
+
+    def take(self) -> bytes | None:
+        """Return the next line without its end, or None where there is none now."""
+        try:
+            return self._waiting.get_nowait()
+        except queue.Empty:
+            return None
+
+    def close(self) -> None:
+        """Read no more."""
+        self._stop.set()
+
+    def _run(self) -> None:
+        try:
+            for line in self._lines():
+                while not self._stop.is_set():
+                    with contextlib.suppress(queue.Full):
+                        self._waiting.put(line, timeout=_LOOK_UP)
+                        break
+        except OSError:
+            # Whoever owned the pipe has closed it under us: that is its end.
+            pass
+        self._read_all.set()
+
+    def _lines(self) -> Iterator[bytes]:
+        rest = b""
+        while not self._stop.is_set():
+            if not self._is_ready():
+                continue
+            part = os.read(self._descriptor, 1 << 16)
+            *whole, rest = (rest + part).split(b"\n")
+            yield from whole
+            if not part:
+                if rest:
+                    yield rest
+                return
+            if len(rest) > _LONGEST:
+                # No frame is that long: it is told as a bad line, and what follows as another.
+                yield rest
+                rest = b""
+
+    def _is_ready(self) -> bool:
+        if sys.platform == "win32":
+            return True
+        return bool(select.select([self._descriptor], [], [], _LOOK_UP)[0])

@@ -7,14 +7,18 @@ from PySide6.QtWidgets import QFrame, QLabel, QSplitter, QStackedWidget, QVBoxLa
 
 from mocapstudio.gui import settings
 from mocapstudio.gui.actions import Actions
-from mocapstudio.gui.compare.bridge import CompareBridge, CompareUi
+from mocapstudio.gui.compare.bridge import CompareBridge
+from mocapstudio.gui.compare.live_bridge import LiveBridge
+from mocapstudio.gui.compare.live_view import LiveView
 from mocapstudio.gui.compare.matrix_view import MatrixView
 from mocapstudio.gui.compare.multiples import MultiplesView
+from mocapstudio.gui.compare.parameter_form import ParameterForm
 from mocapstudio.gui.compare.performances import PerformancesView
 from mocapstudio.gui.compare.pictures import PicturesView
 from mocapstudio.gui.compare.segments_table import SegmentsView
 from mocapstudio.gui.compare.stage import StageView
 from mocapstudio.gui.compare.transport import CompareTransport
+from mocapstudio.gui.compare.weights_view import WeightsView
 from mocapstudio.gui.widgets.parts import header, panel
 
 
@@ -23,16 +27,21 @@ class CompareDesk(QWidget):
 
     Parameters
     ----------
-    bridge
+    bridge, live
         Where state comes from and intents go.
     actions
         The commands behind the buttons.
     """
 
-    def __init__(self, bridge: CompareBridge, actions: Actions) -> None:
+    def __init__(self, bridge: CompareBridge, live: LiveBridge, actions: Actions) -> None:
         super().__init__()
-        self._bridge = bridge
+        self._bridge, self._live = bridge, live
         self.performances = PerformancesView(bridge, actions)
+        self.parameters = ParameterForm(bridge, actions)
+        self._left = QStackedWidget()
+        self._left.addWidget(self.performances)
+        self._left.addWidget(self.parameters)
+        bridge.ui_changed.connect(lambda _old, new: self._left.setCurrentIndex(int(new.parameters)))
         corner = [actions[n] for n in ("compare-overlay", "compare-align-here")]
         corner += [actions[n] for n in ("compare-differences", "compare-others", "follow")]
         self.stage = StageView(bridge, [*corner, None, actions["frame-joint"]])
@@ -43,16 +52,20 @@ class CompareDesk(QWidget):
         self._side.addWidget(self.segments)
         self.matrix = MatrixView(bridge)
         self._side.addWidget(self.matrix)
+        self._side.addWidget(WeightsView(bridge, live, actions))
         self._below = QStackedWidget()
         self._below.addWidget(self.pictures)
         self.multiples = MultiplesView(bridge)
         self._below.addWidget(self.multiples)
+        self.live = LiveView(bridge, live)
+        self._below.addWidget(self.live)
         self._columns = QSplitter(Qt.Orientation.Horizontal)
         self._rows = QSplitter(Qt.Orientation.Vertical)
         self._shared_out = False
         self._lay_out(actions)
-        bridge.ui_changed.connect(self._show_ui)
-        self._show_ui(bridge.ui, bridge.ui)
+        bridge.ui_changed.connect(lambda _old, _new: self._show_parts())
+        live.changed.connect(lambda _old, _new: self._show_parts())
+        self._show_parts()
 
     @property
     def below(self) -> QWidget:
@@ -70,7 +83,8 @@ class CompareDesk(QWidget):
         inner = QVBoxLayout(side)
         inner.setContentsMargins(0, 0, 0, 0)
         inner.setSpacing(0)
-        head = header("Segments", actions.tool_button("compare-matrix"))
+        buttons = (actions.tool_button(n) for n in ("weights-show", "compare-matrix"))
+        head = header("Segments", *buttons)
         titles = head.findChildren(QLabel)
         self._title = titles[0]
         inner.addWidget(head)
@@ -79,7 +93,7 @@ class CompareDesk(QWidget):
             splitter.setObjectName(f"compare-{name}")
             splitter.setHandleWidth(4)
             splitter.setChildrenCollapsible(False)
-        for index, part in enumerate((self.performances, centre, side)):
+        for index, part in enumerate((self._left, centre, side)):
             self._columns.addWidget(part)
             self._columns.setStretchFactor(index, int(index == 1))
         for index, row in enumerate((self._columns, self._below)):
@@ -89,10 +103,16 @@ class CompareDesk(QWidget):
         whole.setContentsMargins(0, 0, 0, 0)
         whole.addWidget(self._rows)
 
-    def _show_ui(self, _old: CompareUi, new: CompareUi) -> None:
-        self._side.setCurrentIndex(int(new.matrix))
-        self._title.setText("Matrix" if new.matrix else "Segments")
-        self._below.setCurrentIndex(int(new.multiples))
+    def _show_parts(self) -> None:
+        ui, live = self._bridge.ui, self._live.shown
+        side = 2 if live.weights_shown else int(ui.matrix)
+        below = 2 if live.on else int(ui.multiples)
+        if (side, below) != (self._side.currentIndex(), self._below.currentIndex()):
+            self._side.setCurrentIndex(side)
+            self._below.setCurrentIndex(below)
+        title = ("Segments", "Matrix", "Weights")[side]
+        if self._title.text() != title:
+            self._title.setText(title)
 
     def share_out(self) -> None:
         """Share the room out as it comes."""
@@ -121,4 +141,5 @@ class CompareDesk(QWidget):
     def restyle(self) -> None:
         """Take over the colours of the theme in force."""
         self.performances.restyle()
+        self.parameters.restyle()
         self.segments.restyle()

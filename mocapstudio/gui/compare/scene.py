@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapstudio.gui.compare.weight_bars import Bars
 from mocapstudio.gui.viewport import floor, marks, scene3d
 from mocapstudio.gui.viewport.bodies import Bodies
 from mocapstudio.gui.viewport.camera import Turntable
@@ -16,6 +17,8 @@ from mocapstudio.gui.viewport.figure import Figure
 from mocapstudio.gui.viewport.palette import Colour, Palette
 from mocapstudio.gui.viewport.solids import Floats
 from mocapstudio.gui.viewport.world import Points
+
+_BEFORE = 0.07
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +41,8 @@ class Pose:
         (N, 3) metres that the marked point travels through, the present in the middle, or None.
     size
         About the performer's height, metres.
+    bars
+        Bars that stand on joints, or None.
     """
 
     points: Points
@@ -47,6 +52,7 @@ class Pose:
     ring: int | None = None
     trail: Points | None = None
     size: float = 1.7
+    bars: Bars | None = None
 
 
 class CompareScene:
@@ -109,6 +115,8 @@ class CompareScene:
 
     def _mark(self, pose: Pose, camera: Turntable, pixel: float) -> None:
         assert self._palette is not None
+        if pose.bars is not None:
+            self._stand(pose.bars, pose.size, camera)
         if pose.ring is None:
             return
         radius = max(0.0225 * pose.size, 7 * pixel)
@@ -117,6 +125,15 @@ class CompareScene:
         self._marks.ring(at, radius, width, camera.basis(), self._palette.accent)
         if pose.trail is not None:
             self._trail(pose.trail, pose.size, camera)
+
+    def _stand(self, bars: Bars, size: float, camera: Turntable) -> None:
+        axes = camera.basis()
+        # In front of the body, not within it.
+        feet = bars.feet + _BEFORE * size * axes[2]
+        lower, upper = bars.parts.T
+        self._marks.bars(feet, lower, bars.width, axes, bars.colours[0])
+        above = feet + lower[:, None] * np.array([0.0, 1.0, 0.0])
+        self._marks.bars(above, upper, bars.width, axes, bars.colours[1])
 
     def _trail(self, path: Points, size: float, camera: Turntable) -> None:
         assert self._palette is not None

@@ -12,15 +12,21 @@ from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QToolTip, QWidget
 
 from mocapstudio.gui import theme
 from mocapstudio.gui.compare import colours as kinds
+from mocapstudio.gui.compare.actors import JointActor
 from mocapstudio.gui.compare.bridge import Alignment, CompareBridge, CompareUi
+from mocapstudio.gui.compare.guest import Guest
 from mocapstudio.gui.compare.naming import short_names
 from mocapstudio.gui.compare.scene import Pose, as_colour
 from mocapstudio.gui.compare.skeleton_view import SkeletonView
 from mocapstudio.gui.compare.troupe import Member, Part, Troupe, figures
+from mocapstudio.gui.compare.weight_bars import Weighting
+from mocapstudio.gui.compare.weight_rows import WeightRow
+from mocapstudio.gui.compare.weights_view import weight_colours
 from mocapstudio.gui.viewport import picking
 from mocapstudio.gui.viewport.camera import Turntable
 from mocapstudio.gui.viewport.overlay import Bar
 from mocapstudio.gui.viewport.palette import Colour, palette
+from mocapstudio.motion.take import Take
 from mocapstudio.review.comparing import ComparingState
 from mocapstudio.review.comparing_state import only_view_differs
 
@@ -53,6 +59,9 @@ class StageView(QWidget):
         self._members: dict[SkeletonView, tuple[Member, ...]] = {}
         self.camera = Turntable()
         self._anchor: np.ndarray | None = None
+        self._guest: Guest | None = None
+        self._weights: tuple[WeightRow, ...] = ()
+        self._weighting: tuple[object, Weighting] | None = None
         self._frame_again = True
         self.left = SkeletonView(self.camera, self._prepare)
         self.right = SkeletonView(self.camera, self._prepare)
@@ -60,7 +69,7 @@ class StageView(QWidget):
         self.right.setObjectName("compare-source")
         self._lay_out(buttons)
         for view in self.views:
-            view.moved.connect(self._stir)
+            view.moved.connect(self.stir)
             view.shown.connect(self._refresh)
             view.clicked.connect(lambda at, view=view: self._click(view, at))
             view.hovered.connect(lambda at, view=view: self._hover(view, at))
@@ -98,12 +107,29 @@ class StageView(QWidget):
         members = self._troupe.reference(self._bridge.state)
         heading = members[0].actor.heading(members[0].frame(self._bridge.state)) if members else 0.0
         self.camera.look(view, heading)
-        self._stir()
+        self.stir()
 
     def frame_all(self) -> None:
         """Bring all of the body into sight again."""
         self._frame_again = True
-        self._stir()
+        self.stir()
+
+    def guest_of(self, reference: Take, name: str) -> Guest:
+        """Make a guest who borrows the reference's skeleton."""
+        host = self._troupe.actor(reference)
+        assert isinstance(host, JointActor)
+        return Guest(host, name)
+
+    def invite(self, guest: Guest | None) -> None:
+        """Show somebody whose frames arrive in the place of the sources, or nobody."""
+        self._guest = guest
+        self._refresh()
+
+    def show_weights(self, rows: tuple[WeightRow, ...]) -> None:
+        """Show on the reference how much its joints count."""
+        if rows != self._weights:
+            self._weights, self._weighting = rows, None
+            self.stir()
 
     # -- state
 
@@ -114,7 +140,7 @@ class StageView(QWidget):
             self._cast()
         self._go_along(new)
         self._tell(new)
-        self._stir()
+        self.stir()
 
     def _show_ui(self, old: CompareUi, new: CompareUi) -> None:
         apart = not new.overlay
@@ -127,7 +153,7 @@ class StageView(QWidget):
             self._cast()
             self._go_along(self._bridge.state)
             self._tell(self._bridge.state)
-            self._stir()
+            self.stir()
 
     def _cast(self) -> None:
         if not self.isVisible():
@@ -135,6 +161,8 @@ class StageView(QWidget):
         state, ui = self._bridge.state, self._bridge.ui
         reference = self._troupe.reference(state)
         sources = self._troupe.sources(state, ui.others)
+        if self._guest is not None:
+            sources = (self._troupe.invited(self._guest),)
         self._members = {
             self.left: (*reference, *sources) if ui.overlay else reference,
             self.right: () if ui.overlay else sources,
@@ -160,10 +188,12 @@ class StageView(QWidget):
         if len(members) < 2:
             return []
         short = short_names([one.id for one in self._bridge.state.sources])
-        return [
-            ("reference" if one.source is None else short[one.source.id], self._colour(one))
-            for one in members
-        ]
+        names = {
+            one: "reference" if one.source is None else short[one.source.id] for one in members
+        }
+        if self._guest is not None:
+            names[members[-1]] = self._guest.name
+        return [(name, self._colour(one)) for one, name in names.items()]
 
     def _tell(self, state: ComparingState) -> None:
         reference, source = state.reference, state.source
@@ -175,12 +205,15 @@ class StageView(QWidget):
         if source is not None:
             at = state.source_frame
             beside = f"{source.take.seconds(at):.2f} s · frame {at + source.take.first_frame}"
+        name_beside = "" if source is None else source.id
+        if self._guest is not None:
+            name_beside, beside = self._guest.name, ""
         if self._bridge.ui.overlay:
             self.left.caption.tell("Overlay", f"reference {words}   source {beside}")
         else:
             name = "" if reference is None else f"{reference.name} (reference)"
             self.left.caption.tell(name, words)
-            self.right.caption.tell("" if source is None else source.id, beside)
+            self.right.caption.tell(name_beside, beside)
         corner = self.left if self._bridge.ui.overlay else self.right
         other = self.right if corner is self.left else self.left
         corner.spare(self._bar.sizeHint().width() + 24)
@@ -256,22 +289,37 @@ class StageView(QWidget):
             steps = np.arange(-_TRAIL_STEPS, _TRAIL_STEPS + 1) * _TRAIL * rate / _TRAIL_STEPS
             at = np.clip(np.rint(frame + steps), 0, member.actor.frames - 1).astype(int)
             trail = placed(np.stack([member.actor.points(int(k))[ring] for k in at]))
+        points = placed(member.actor.points(frame))
+        colours = self._troupe.colours(member, state, self._colour(member), hot)
+        weighting = self._weighting_of(member)
+        if weighting is not None:
+            colours = weighting.tints(self._palette.body, _weight_colours()[0])
         return Pose(
-            points=placed(member.actor.points(frame)),
-            colours=self._troupe.colours(member, state, self._colour(member), hot),
+            points=points,
+            colours=colours,
             girth=_GIRTH[member.part],
             swell=member.actor.swell(frame),
             ring=ring,
             trail=trail,
             size=member.actor.size,
+            bars=None if weighting is None else weighting.bars(points, _weight_colours()),
         )
 
+    def _weighting_of(self, member: Member) -> Weighting | None:
+        if not self._weights or member.part is not Part.REFERENCE:
+            return None
+        if self._weighting is None or self._weighting[0] is not member.actor:
+            assert not isinstance(member.actor, Guest)
+            self._weighting = member.actor, Weighting(member.actor, self._weights)
+        return self._weighting[1]
+
     def _colour(self, member: Member) -> Colour:
-        if member.source is None:
+        if member.part is Part.REFERENCE:
             return self._palette.body
         return as_colour(kinds.source(theme.current(), member.number))
 
-    def _stir(self) -> None:
+    def stir(self) -> None:
+        """Say that the picture is another."""
         for view in self.views:
             if view.isVisible():
                 view.stir()
@@ -333,3 +381,8 @@ class StageView(QWidget):
                 view.caption.restyle()
             self._bar.restyle()
             self._refresh()
+
+
+def _weight_colours() -> tuple[Colour, Colour]:
+    lower, upper = weight_colours()
+    return as_colour(lower.name()), as_colour(upper.name())

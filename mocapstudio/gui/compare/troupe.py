@@ -13,6 +13,7 @@ from mocapstudio.comparison.model import Comparison
 from mocapstudio.gui.compare import placing
 from mocapstudio.gui.compare.actors import Actor, actor_of
 from mocapstudio.gui.compare.bridge import Alignment, CompareUi
+from mocapstudio.gui.compare.guest import Guest
 from mocapstudio.gui.compare.placing import Placing
 from mocapstudio.gui.viewport.figure import Figure
 from mocapstudio.gui.viewport.palette import Colour
@@ -43,13 +44,13 @@ class Member:
     actor, figure
         How it moves, and its shape.
     source
-        The source it shows, or None for the reference.
+        The source it shows, or None for the reference and for a guest.
     number
         Position among the sources, for its colour.
     """
 
     part: Part
-    actor: Actor
+    actor: Actor | Guest
     figure: Figure
     source: Compared | None = None
     number: int = -1
@@ -69,6 +70,11 @@ class Troupe:
         self._common: dict[Comparison, tuple[Indices, Indices]] = {}
         self._here: dict[tuple[Comparison, int], Placing] = {}
         self._scales: dict[Comparison, tuple[float, Indices]] = {}
+
+    @staticmethod
+    def invited(guest: Guest) -> Member:
+        """Return somebody who is no source, in the place of one."""
+        return Member(Part.SOURCE, guest, guest.figure(FINE), number=0)
 
     def actor(self, take: Recording) -> Actor:
         """Return the actor of a performance, the same one for the same take."""

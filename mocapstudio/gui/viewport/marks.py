@@ -106,6 +106,21 @@ class Marks:
         )
         self._add(np.concatenate([path - half, path + half]), cells, np.tile(colours, (2, 1)))
 
+    def bars(
+        self,
+        feet: Points,
+        heights: NDArray[np.floating],
+        width: float,
+        axes: NDArray[np.float64],
+        colour: Colour,
+    ) -> None:
+        """Stand (N,) upright bars on (N, 3) feet; `axes` are the camera's right, up and back."""
+        half = 0.5 * width * axes[0]
+        rise = heights[:, None] * np.array([0.0, 1.0, 0.0])
+        corners = np.stack([feet - half, feet + half, feet + half + rise, feet - half + rise])
+        cells = _fans(len(feet), 4)
+        self._add(corners.transpose(1, 0, 2).reshape(-1, 3), cells, np.array(colour, np.uint8))
+
     def show(self) -> None:
         """Put what was collected into the mesh and begin anew."""
         shape = tuple([len(one) for one in self._corners] + [len(one) for one in self._cells])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,11 +15,18 @@ from mocapstudio.gui.compare.answering import Answering
 from mocapstudio.gui.compare.bridge import CompareBridge, CompareUi
 from mocapstudio.gui.compare.desk import CompareDesk
 from mocapstudio.gui.compare.empty import EmptyCompare
+from mocapstudio.gui.compare.flagging import Flagging
+from mocapstudio.gui.compare.inviting import Inviting
+from mocapstudio.gui.compare.live_answering import LiveAnswering
+from mocapstudio.gui.compare.live_bridge import LiveBridge, LiveShown
+from mocapstudio.gui.compare.live_mode import LiveMode
 from mocapstudio.gui.compare.playing import ComparePlayback
+from mocapstudio.gui.compare.weight_rows import WeightRow, weight_rows
 from mocapstudio.gui.compare.working import Working
 from mocapstudio.gui.dialogs.question import confirm
 from mocapstudio.gui.dialogs.rate import ask_rate
 from mocapstudio.gui.workspaces.workspace import Answers, Workspace
+from mocapstudio.motion.errors import MocapError
 from mocapstudio.review.comparing import ComparingState
 from mocapstudio.review.comparing_state import only_view_differs
 
@@ -42,22 +50,28 @@ class CompareWorkspace(Workspace):
         self.setObjectName("compare")
         self._actions = window.actions_
         self.bridge = CompareBridge(self)
-        self.working = Working(self.bridge, window.jobs, window.messages, self)
+        flagging = Flagging(window.bridge, window.jobs, window.messages, self)
+        self.working = Working(self.bridge, flagging, window.jobs, window.messages, self)
         self.playback = ComparePlayback(self.bridge, self)
-        self.desk = CompareDesk(self.bridge, window.actions_)
+        self.live = LiveBridge(self)
+        self.live_mode = LiveMode(self.bridge, self.live, window.jobs, window.messages, self)
+        self.desk = CompareDesk(self.bridge, self.live, window.actions_)
         self.empty = EmptyCompare(window.actions_)
         self.answering = Answering(window, self)
+        self.live_answering = LiveAnswering(window, self)
+        Inviting(self.bridge, self.live, self.live_mode, self.desk.stage)
         self._stack = QStackedLayout(self)
         self._stack.addWidget(self.empty)
         self._stack.addWidget(self.desk)
         self.working.rate_wanted.connect(partial(ask_rate, window))
         self.bridge.changed.connect(self._follow)
         self.bridge.ui_changed.connect(self._follow_ui)
+        self.live.changed.connect(self._follow_live)
         self._show(self.bridge.state)
 
     def answers(self) -> Answers:
         """Answer the shared commands."""
-        return self.answering.answers()
+        return self.live_answering.answers(self.answering.answers())
 
     def tools(self) -> Sequence[QWidget]:
         """What it adds to the toolbar."""
@@ -94,6 +108,7 @@ class CompareWorkspace(Workspace):
     def leave(self) -> None:
         """Stop playing."""
         self.bridge.set_ui(playing=False)
+        self.live_mode.pause()
 
     def hold_back(self, close: Callable[[], object]) -> bool:
         """Ask before segments that stand in no file are lost."""
@@ -111,13 +126,31 @@ class CompareWorkspace(Workspace):
     def _follow(self, old: ComparingState, new: ComparingState) -> None:
         if not only_view_differs(old, new):
             self._show(new)
+            self._show_weights()
             self.answers_changed.emit()
 
     def _follow_ui(self, _old: CompareUi, _new: CompareUi) -> None:
         self.answers_changed.emit()
 
+    def _follow_live(self, old: LiveShown, new: LiveShown) -> None:
+        switches = ("phase", "wait", "weights", "weights_shown", "streams")
+        if all(getattr(old, name) == getattr(new, name) for name in switches):
+            return
+        self._show(self.bridge.state)
+        self._show_weights()
+        self.answers_changed.emit()
+
+    def _show_weights(self) -> None:
+        shown = self.live.shown
+        rows: tuple[WeightRow, ...] = ()
+        if shown.weights_shown:
+            with suppress(MocapError):
+                rows = weight_rows(shown.weights, self.bridge.state.reference)
+        self.desk.stage.show_weights(rows)
+
     def _show(self, state: ComparingState) -> None:
-        page: QWidget = self.desk if state.reference and state.sources else self.empty
+        filled = state.reference and (state.sources or self.live.shown.on)
+        page: QWidget = self.desk if filled else self.empty
         self.empty.tell("" if state.reference is None else state.reference.name)
         if self._stack.currentWidget() is not page:
             self._stack.setCurrentWidget(page)
