@@ -26,8 +26,8 @@ Figure = Annotated[
     typer.Option(
         "--figure",
         metavar="OUT.png",
-        help="Draw the comparison (PNG or SVG); with several sources a picture each, named"
-        " after it.",
+        help="Draw the comparison (PNG or SVG); with several sources all below one another, and a"
+        " picture each, named after it.",
     ),
 ]
 WarpedFolder = Annotated[
@@ -77,12 +77,11 @@ def compare(
             found = read_recordings(work, path)
             for source in found:
                 done = job.run(source, path)
-                if figure is not None:
-                    alone = len(files) == len(found) == 1
-                    name = figure.stem if alone else f"{figure.stem}-{source.name}"
-                    _draw(done, figure.with_stem(name))
                 if warped is not None:
                     _write_warped(done, warped, written, inputs=[reference, *files])
+    if figure is not None:
+        with work.going_on():
+            _draw(job.done, figure)
     if json_path is None:
         from mocapstudio.cli.comparison_table import show
 
@@ -97,10 +96,16 @@ def _check_figure(path: Path | None) -> None:
         raise FileError(path, "a picture is written as .png or .svg")
 
 
-def _draw(done: Compared, path: Path) -> None:
+def _draw(done: Sequence[Compared], path: Path) -> None:
     from mocapstudio.pictures.comparison_picture import comparison_picture
+    from mocapstudio.pictures.ranking_picture import ranking_picture
 
-    comparison_picture(done.comparison, done.carried, svg=path.suffix.lower() == ".svg").save(path)
+    svg, alone = path.suffix.lower() == ".svg", len(done) == 1
+    for one in done:
+        place = path if alone else path.with_stem(f"{path.stem}-{one.source.name}")
+        comparison_picture(one.comparison, one.carried, svg=svg).save(place)
+    if done and not alone:
+        ranking_picture([one.comparison for one in done], svg=svg).save(path)
 
 
 def _write_warped(done: Compared, folder: Path, taken: set[Path], inputs: Sequence[Path]) -> None:

@@ -144,6 +144,8 @@ def test_pictures_and_warped_takes_are_written(command, kata, tmp_path: Path) ->
     assert several.returncode == 0
     for name in ("a-pause.svg", "a-twin.svg"):
         assert "<svg" in (tmp_path / name).read_text()[:1000]
+    everyone = (tmp_path / "a.svg").read_text()
+    assert "1  twin" in everyone and "2  pause" in everyone
 
 
 def test_a_bad_source_is_one_line_and_the_others_are_compared(
