@@ -16,6 +16,7 @@ from mocapstudio.motion.errors import MocapError
 
 if TYPE_CHECKING:
     from mocapstudio.formats import ReadOptions
+    from mocapstudio.gui.compare.live_opening import LiveRequest
 
 # Threads that hold the interpreter give it to the desk after this many seconds.
 _SWITCH = 0.002
@@ -27,6 +28,7 @@ def run(
     partners: Sequence[Path] = (),
     options: ReadOptions | None = None,
     renamed: Mapping[str, str] | None = None,
+    live: LiveRequest | None = None,
 ) -> int:
     """Open the desk and return the exit code when it is closed.
 
@@ -42,6 +44,8 @@ def run(
         What replaces the files' own rate, unit and up axis.
     renamed
         Joints of the context, by name, and what they are called in the take.
+    live
+        A live performance to begin with, in the Compare workspace.
 
     Raises
     ------
@@ -57,6 +61,10 @@ def run(
     window.start()
     manner = Manner(options, renamed or {})
     window.open(list(paths), list(context), list(partners), manner)
+    if live is not None:
+        from mocapstudio.gui.compare.live_opening import open_live
+
+        open_live(window, live)
     code = app.exec()
     sys.excepthook = sys.__excepthook__
     return code

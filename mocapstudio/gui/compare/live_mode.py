@@ -102,6 +102,7 @@ class LiveMode(QObject):
         self._clock = clock
         self._stream: StreamFeed | None = None
         self._stream_rate: float | None = None
+        self._hang_up: Callable[[], object] = lambda: None
         self._prepared: _Prepared | None = None
         self._performer: Recording | None = None
         self._played, self._looked = 0.0, 0.0
@@ -124,9 +125,19 @@ class LiveMode(QObject):
             self._stream is not None or state.source is not None
         )
 
-    def listen(self, stream: StreamFeed, name: str, rate: float | None = None) -> None:
-        """Let a stream perform, at `rate` frames a second or what its first frames tell."""
-        self._stream, self._stream_rate = stream, rate
+    def listen(
+        self,
+        stream: StreamFeed,
+        name: str,
+        rate: float | None = None,
+        hang_up: Callable[[], object] = lambda: None,
+    ) -> None:
+        """Let a stream perform, at `rate` frames a second or what its first frames tell.
+
+        `hang_up` is called when no more is wanted of it.
+        """
+        self.hang_up()
+        self._stream, self._stream_rate, self._hang_up = stream, rate, hang_up
         self._live.set(streams=True, name=name)
         self.begin()
 
@@ -136,6 +147,9 @@ class LiveMode(QObject):
         self._jobs.cancel(_KEY)
         self._prepared = None
         state = self._bridge.state
+        if self._stream is not None and self._stream.ended and state.source is not None:
+            # What the stream had to say was heard; now it is the source's turn.
+            self.hang_up()
         if state.reference is None or not self.possible:
             return
         self._bridge.set_ui(playing=False)
@@ -148,6 +162,12 @@ class LiveMode(QObject):
             self._prepare(self._performer, None)
         else:
             self._timer.start()
+
+    def hang_up(self) -> None:
+        """Want no more of the stream."""
+        self._hang_up()
+        self._stream = None
+        self._live.set(streams=False)
 
     def stop(self) -> None:
         """Switch live mode off."""

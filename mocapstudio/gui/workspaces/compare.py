@@ -120,7 +120,8 @@ class CompareWorkspace(Workspace):
         return True
 
     def remember(self) -> None:
-        """Remember the layout."""
+        """Remember the layout, and listen no more."""
+        self.live_mode.hang_up()
         self.desk.remember()
 
     def _follow(self, old: ComparingState, new: ComparingState) -> None:
