@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapstudio.cleaning.contacts.floor_plane import Rest, fit_plane
 from mocapstudio.cleaning.contacts.speeds import one_sided, runs, smoothed
 
 Array = NDArray[np.float64]
@@ -20,36 +21,11 @@ Array = NDArray[np.float64]
 _REST_SPEED, _REST_CLIMB = 0.3, 0.12
 """Shares of the leg a second below which a point rests: in all, and upward or downward."""
 _REST_SECONDS = 0.05
-_SCATTER = 0.03
-"""Share of the leg within which rests on one floor scatter."""
 _NEAR = 0.07
 """Share of the leg: a rest this near the plane is a rest on the floor."""
-_SLOPE_PRIOR = 2.0
-"""Pull of the plane towards level, as rests of one second, a leg away, on a level floor."""
 _CLEAR = 0.35
 """Share of the leg by which the hips are above a foot that carries."""
 _ALONE_SECONDS = 0.1
-_ITERATIONS = 12
-
-
-@dataclass(frozen=True)
-class Rest:
-    """A point at rest.
-
-    Parameters
-    ----------
-    point
-        Index of the point.
-    start, end
-        Half-open span of frames.
-    place
-        (x, y, z) metres: the middle of where it was.
-    """
-
-    point: int
-    start: int
-    end: int
-    place: tuple[float, float, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,9 +92,9 @@ def fit_floor(
         return FittedFloor(
             0.0, np.zeros(2), levels, (), np.broadcast_to(levels, positions.shape[:2])
         )
-    height, slope, levels = _plane(found, positions.shape[1], rate, leg)
+    height, slope, levels = fit_plane(found, positions.shape[1], rate, leg)
     plane = height + positions[..., [0, 2]] @ slope + levels
-    rising = np.array([r.place[1] - height - _across(r) @ slope - levels[r.point] for r in found])
+    rising = np.array([r.place[1] - height - r.across @ slope - levels[r.point] for r in found])
     carried = _carrying(found, positions, rate, leg, hips, limbs)
     kept = [
         (rest, above)
@@ -143,54 +119,6 @@ def _rests(positions: Array, rate: float, leg: float) -> list[Rest]:
         ),
         key=lambda rest: rest.start,
     )
-
-
-def _across(rest: Rest) -> Array:
-    return np.array([rest.place[0], rest.place[2]])
-
-
-def _plane(
-    found: Sequence[Rest], points: int, rate: float, leg: float
-) -> tuple[float, Array, Array]:
-    """Fit height, slope (2,) and levels (P,) by iteratively reweighted least squares."""
-    which = np.array([rest.point for rest in found])
-    across = np.stack([_across(rest) for rest in found])
-    up = np.array([rest.place[1] for rest in found])
-    # A long rest tells little more than a short one.
-    base = np.minimum([(rest.end - rest.start) / rate for rest in found], 1.0)
-    middle = np.average(across, axis=0, weights=base)
-    design = np.zeros((len(found) + 2, 2 + points))
-    design[: len(found), :2] = across - middle
-    design[np.arange(len(found)), 2 + which] = 1.0
-    design[-2:, :2] = np.eye(2) * leg
-    target = np.concatenate([up, np.zeros(2)])
-    solution = np.concatenate([np.zeros(2), _lowest_levels(which, up, base, points)])
-    for _ in range(_ITERATIONS):
-        off = (up - design[:-2] @ solution) / (3 * _SCATTER * leg)
-        trust = base * np.clip(1 - off**2, 0, None) ** 2 + 1e-9
-        root = np.sqrt(np.concatenate([trust, [_SLOPE_PRIOR] * 2]))
-        ridge = 1e-6 * np.eye(2 + points)
-        scaled = design * root[:, None]
-        solution = np.linalg.solve(
-            scaled.T @ scaled + ridge, scaled.T @ (target * root) + ridge @ solution
-        )
-    slope, levels = solution[:2], solution[2:]
-    height = float(np.median(levels))
-    return height - float(middle @ slope), slope, levels - height
-
-
-def _lowest_levels(which: NDArray[np.int64], up: Array, weights: Array, points: int) -> Array:
-    """(P,) metres: a low, well supported height of each point's rests."""
-    lowest = float(np.percentile(up, 20))
-    levels = np.full(points, lowest)
-    for point in range(points):
-        mine = which == point
-        if not mine.any():
-            continue
-        order = np.argsort(up[mine])
-        share = np.cumsum(weights[mine][order]) / weights[mine].sum()
-        levels[point] = up[mine][order][np.searchsorted(share, 0.3)]
-    return levels
 
 
 def _carrying(

@@ -34,7 +34,12 @@ _SUNK_LEAST, _SUNK_MOST = 0.004, 0.04
 """Of `sunk`, in legs."""
 _OPEN = 0.5
 """Learning begins with contacts that may be faster than usual by this, in log speed."""
-_WIDEST, _NARROWEST = 1.3, 0.4
+_WIDEST, _NARROWEST = 1.3, 0.6
+"""Of the spread of a log speed: a foot that shifts on the spot is no free one, however still the
+rest of the take stands."""
+_SLOWEST_FREE = 0.3
+"""Below the usual log speed of a free point by no more than this: where nothing moves, nothing
+tells what is free."""
 
 
 @dataclass(frozen=True)
@@ -113,7 +118,7 @@ def learnt(prior: Emissions, speed: Array, height: Array, rate: float) -> Emissi
             now,
             contact=contact,
             contact_spread=contact_spread,
-            free=max(free, contact + 1.0),
+            free=max(free, contact + 1.0, prior.free - _SLOWEST_FREE),
             free_spread=free_spread,
             sunk=max(_SUNK_LEAST, float(np.sqrt(square / (float(p.sum()) + _PRIOR_FRAMES)))),
         )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from mocapstudio.cleaning.contacts.floor import FittedFloor, fit_floor
 
@@ -54,6 +55,14 @@ def test_slope_is_told() -> None:
     floor = fit_floor(places, RATE, LEG, hips, [0, 1])
     assert error(floor, places, stance) < 0.02
     assert 0.05 < floor.slope[0] < 0.08
+
+
+@pytest.mark.parametrize("slope", [-0.17, 0.17])
+def test_a_steep_ramp_is_no_row_of_steps(slope: float) -> None:
+    places, hips, stance = walk(lambda x: slope * x, steps=8, lag=0.3)
+    floor = fit_floor(places, RATE, LEG, hips, [0, 1])
+    assert error(floor, places, stance) < 0.03
+    assert abs(floor.slope[0] - slope) < 0.03
 
 
 def test_stairs_carry() -> None:

@@ -19,7 +19,7 @@ LABELS = Path(__file__).parents[2] / "contacts"
 
 def test_marked_contacts_are_found_and_better_than_by_thresholds(data: Path) -> None:
     cases = [case for case in marked([data], LABELS) if case.part == "test"]
-    assert len(cases) == 6
+    assert len(cases) == 12
     ours = score_contacts("ours", detect_contacts, cases)
     assert ours.tolerant.f1 >= 0.95
     assert ours.worst[0] >= 0.9
