@@ -43,6 +43,7 @@ class Guest:
         self.take = host.take
         self.names, self.owners = host.names, host.owners
         self.level, self.size = host.level, host.size
+        self.seconds: float | None = None
         self._hips = topology(host.take.skeleton).hips
         self._rotations = host.take.rotations[:1].copy()
         self._places = host.take.translations[:1].copy()

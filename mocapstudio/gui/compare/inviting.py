@@ -37,6 +37,7 @@ class Inviting(QObject):
     def _pose(self, frame: Arrived) -> None:
         if self._guest is not None and frame.joints is not None:
             self._guest.pose(frame.joints, frame.root)
+            self._guest.seconds = frame.time
 
     def _follow(self, old: LiveShown, new: LiveShown) -> None:
         wanted = new.on and new.streams

@@ -55,7 +55,7 @@ class LiveShown:
     notes
         How often something was odd about a frame, by what.
     faults, fault
-        How many lines could not be read, and what is wrong with the latest of them.
+        How many lines could not be read; which was the latest, and what is wrong with it.
     """
 
     phase: Phase = Phase.OFF

@@ -293,7 +293,7 @@ class LiveMode(QObject):
             while (one := feed.due(self._played)) is not None:
                 if isinstance(one, FileError):
                     faults += 1
-                    changes |= {"faults": faults, "fault": str(one)}
+                    changes |= {"faults": faults, "fault": f"line {one.line}: {one.cause}"}
                 else:
                     frames += 1
                     latest = one

@@ -6,13 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, Qt, QTimer
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
+from PySide6.QtWidgets import QWidget
 
 from mocapstudio.gui import theme as themes
 from mocapstudio.gui.compare.bridge import CompareBridge
 from mocapstudio.gui.compare.live_bridge import LiveBridge, LiveShown
 from mocapstudio.gui.plots.axes import small_font
 from mocapstudio.gui.plots.ticks import time_ticks
-from mocapstudio.gui.widgets.native import NativeView
 
 LEFT, RIGHT = 46.0, 16.0
 _BOTTOM = 18.0
@@ -23,7 +23,7 @@ _CENTRE = int(Qt.AlignmentFlag.AlignCenter)
 Array = NDArray[np.float64]
 
 
-class LivePlot(NativeView):
+class LivePlot(QWidget):
     """Draws the course of the action a dozen times a second at most.
 
     Parameters

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPaintEvent
+from PySide6.QtWidgets import QWidget
 
 from mocapstudio.comparison.online_begin import Following
 from mocapstudio.gui import theme as themes
@@ -12,12 +13,9 @@ from mocapstudio.gui.compare import live_words as words
 from mocapstudio.gui.compare.bridge import CompareBridge
 from mocapstudio.gui.compare.live_bridge import LiveBridge, LiveShown, Phase
 from mocapstudio.gui.plots.axes import small_font
-from mocapstudio.gui.widgets.native import NativeView
 
 _LEFT = int(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
-_WRAPPED = int(
-    Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWrapAnywhere
-)
+_WRAPPED = int(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap)
 _MARGIN = 14.0
 _TIP = (
     "Seconds the performer is ahead of the reference since the action began (early, +) or\n"
@@ -25,7 +23,7 @@ _TIP = (
 )
 
 
-class LiveReadout(NativeView):
+class LiveReadout(QWidget):
     """The figures of live mode.
 
     Parameters

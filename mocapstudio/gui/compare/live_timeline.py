@@ -4,24 +4,24 @@ from __future__ import annotations
 
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPaintEvent, QPen, QPolygonF
+from PySide6.QtWidgets import QWidget
 
 from mocapstudio.gui import theme as themes
 from mocapstudio.gui.compare import colours as kinds
 from mocapstudio.gui.compare.bridge import CompareBridge
 from mocapstudio.gui.compare.live_bridge import LiveBridge
+from mocapstudio.gui.compare.live_plot import LEFT, RIGHT
 from mocapstudio.gui.compare.live_words import timing_kind
 from mocapstudio.gui.plots import colours
 from mocapstudio.gui.plots.axes import small_font
 from mocapstudio.gui.plots.ticks import time_ticks
-from mocapstudio.gui.widgets.native import NativeView
 
-_SIDE = 16.0
 _TOP, _LANE, _TRACK = 26.0, 26.0, 10.0
 _CENTRE = int(Qt.AlignmentFlag.AlignCenter)
 _LEFT = int(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
 
 
-class LiveTimeline(NativeView):
+class LiveTimeline(QWidget):
     """Segments of the reference, and how far the performer has come.
 
     The solid head is where she is; the dashed one where she would be at the reference's own
@@ -56,11 +56,15 @@ class LiveTimeline(NativeView):
         punctual = at if step.misalignment is None else at - step.misalignment
         return at, min(max(punctual, 0.0), reference.duration)
 
+    @property
+    def _wide(self) -> float:
+        return max(self.width() - LEFT - RIGHT, 1.0)
+
     def x_of(self, seconds: float) -> float:
         """Pixel of a time of the reference."""
         reference = self._bridge.state.reference
         whole = 1.0 if reference is None else reference.duration
-        return _SIDE + seconds / whole * (self.width() - 2 * _SIDE)
+        return LEFT + seconds / whole * self._wide
 
     def _follow(self) -> None:
         state = self._bridge.state
@@ -80,9 +84,9 @@ class LiveTimeline(NativeView):
             p.setPen(QColor(look.muted))
             name = QFontMetricsF(p.font()).elidedText(
                 f"Reference · {state.reference.name}", Qt.TextElideMode.ElideMiddle,
-                self.width() - 2 * _SIDE,
+                self._wide,
             )  # fmt: skip
-            p.drawText(QRectF(_SIDE, 4, self.width() - 2 * _SIDE, 16), _LEFT, name)
+            p.drawText(QRectF(LEFT, 4, self._wide, 16), _LEFT, name)
             self._draw_segments(p)
             self._draw_track(p)
             self._draw_ticks(p)
@@ -92,7 +96,7 @@ class LiveTimeline(NativeView):
     def _draw_segments(self, p: QPainter) -> None:
         look, state, step = themes.current(), self._bridge.state, self._live.shown.step
         assert state.reference is not None
-        lane = QRectF(_SIDE, _TOP, self.width() - 2 * _SIDE, _LANE)
+        lane = QRectF(LEFT, _TOP, self._wide, _LANE)
         p.setPen(Qt.PenStyle.NoPen)
         p.setBrush(QColor(look.field))
         p.drawRoundedRect(lane, 4, 4)
@@ -117,7 +121,7 @@ class LiveTimeline(NativeView):
     def _draw_track(self, p: QPainter) -> None:
         look, heads = themes.current(), self.heads
         top = _TOP + _LANE + 6
-        track = QRectF(_SIDE, top, self.width() - 2 * _SIDE, _TRACK)
+        track = QRectF(LEFT, top, self._wide, _TRACK)
         p.setPen(Qt.PenStyle.NoPen)
         p.setBrush(QColor(look.field))
         p.drawRoundedRect(track, 3, 3)
@@ -126,7 +130,7 @@ class LiveTimeline(NativeView):
         at, punctual = (self.x_of(one) for one in heads)
         done = min(at, punctual)
         p.setBrush(QColor(look.faint))
-        p.drawRoundedRect(QRectF(_SIDE, top, max(done - _SIDE, 0), _TRACK), 3, 3)
+        p.drawRoundedRect(QRectF(LEFT, top, max(done - LEFT, 0), _TRACK), 3, 3)
         p.setBrush(self._colour())
         p.drawRect(QRectF(done, top, abs(at - punctual), _TRACK))
 

@@ -14,7 +14,7 @@ _NOTES = {
     Note.REPEATED: "repeated",
     Note.LATE: "out of order",
     Note.UNSEEN: "unseen",
-    Note.BRIDGED: "gaps bridged",
+    Note.BRIDGED: "bridged",
     Note.GAP: "long gaps",
     Note.RESTARTED: "clock set back",
 }
@@ -43,7 +43,7 @@ def phase_words(shown: LiveShown) -> str:
     if shown.phase is Phase.PAUSED:
         return "Paused"
     if shown.phase is Phase.ENDED:
-        return "At the end"
+        return "The stream has ended" if shown.streams else "At the end"
     if shown.now is None or shown.now.following is Following.WAITING:
         return "Waiting for the beginning"
     return "Following"

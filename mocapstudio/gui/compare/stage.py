@@ -207,7 +207,8 @@ class StageView(QWidget):
             beside = f"{source.take.seconds(at):.2f} s · frame {at + source.take.first_frame}"
         name_beside = "" if source is None else source.id
         if self._guest is not None:
-            name_beside, beside = self._guest.name, ""
+            name_beside, now = self._guest.name, self._guest.seconds
+            beside = "" if now is None else f"{now:.2f} s"
         if self._bridge.ui.overlay:
             self.left.caption.tell("Overlay", f"reference {words}   source {beside}")
         else:

@@ -42,7 +42,7 @@ class CompareTransport(QFrame):
         row.setContentsMargins(10, 4, 10, 4)
         row.setSpacing(3)
         row.addWidget(actions.tool_button("compare-path", text="Path"))
-        row.addWidget(actions.tool_button("compare-live", text="Live"))
+        row.addWidget(actions.tool_button("compare-live"))
         row.addStretch(1)
         for name in ("first", "frame-back", "play", "frame-on", "last"):
             row.addWidget(actions.tool_button(name))

@@ -13,7 +13,7 @@ from mocapstudio.gui.compare.weight_rows import WeightRow
 from mocapstudio.gui.viewport.palette import Colour
 from mocapstudio.gui.viewport.world import Points
 
-_HEIGHT = 0.15
+_HEIGHT = 0.11
 _WIDTH = 0.016
 
 
