@@ -46,6 +46,8 @@ class MainWindow(QMainWindow):
         self.setWindowIcon(icons.application_icon())
         self.setMinimumSize(1000, 640)
         self.bridge = DocumentBridge(Document(), self)
+        # Before all views, which ask for its colours when they hear of it.
+        self.bridge.ui_changed.connect(_put_theme_in_force)
         self.jobs = Jobs(self)
         self.messages = Messages(self)
         self.actions_ = Actions(self)
@@ -133,7 +135,8 @@ class MainWindow(QMainWindow):
         if old is not new and only_frame_differs(old, new):
             return
         self.actions_.follow_state(new)
-        name = "" if new.take is None else new.take.name
+        takes = [one.take for one in new.markers] if new.take is None else [new.take]
+        name = takes[0].name if takes else ""
         if new.path is not None:
             name = f"{name} – {new.path.name}" if name else new.path.name
         self.setWindowTitle(f"{name}[*] – mocapstudio" if name else "mocapstudio")
@@ -141,10 +144,6 @@ class MainWindow(QMainWindow):
 
     def _follow_ui(self, old: UiState, new: UiState) -> None:
         if old.theme != new.theme:
-            app = QApplication.instance()
-            assert isinstance(app, QApplication)
-            theme.apply(app, theme.THEMES[new.theme])
-            settings.set_text("theme", new.theme)
             self.actions_.recolour()
             self.welcome.refresh()
         self.actions_.follow_ui(new)
@@ -167,3 +166,11 @@ class MainWindow(QMainWindow):
             self.files.opening.set_context(context)
         if paths or partners:
             self.files.open_paths(paths, partners)
+
+
+def _put_theme_in_force(old: UiState, new: UiState) -> None:
+    if old.theme != new.theme:
+        app = QApplication.instance()
+        assert isinstance(app, QApplication)
+        theme.apply(app, theme.THEMES[new.theme])
+        settings.set_text("theme", new.theme)

@@ -92,6 +92,23 @@ def test_layout_and_theme_are_remembered(open_desk, qtbot, generated):
     other.menu("View", "Light Theme")
 
 
+def test_another_theme_recolours_what_already_stands_there(hands, generated):
+    open_take(hands, generated.take)
+    hands.press("N")
+    verdict = hands.find("inspector-verdict")
+
+    def ink() -> set[str]:
+        picture = verdict.grab().toImage()
+        places = ((x, y) for x in range(picture.width()) for y in range(picture.height()))
+        return {picture.pixelColor(x, y).name() for x, y in places}
+
+    hands.see(lambda: theme.DARK.open.lower() in ink())
+    hands.menu("View", "Light Theme")
+    hands.see(lambda: theme.LIGHT.open.lower() in ink())
+    assert theme.DARK.open.lower() not in ink()
+    hands.menu("View", "Light Theme")
+
+
 def test_the_frame_box_speaks_the_files_numbers_and_gives_the_keys_back(hands, generated):
     open_take(hands, generated.take)
     first = hands.find("frame").minimum()
