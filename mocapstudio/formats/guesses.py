@@ -22,6 +22,8 @@ _PLAUSIBLE_LEG = (0.55, 1.05)
 
 _LATEST_START = 4
 _EARLY = 120
+# A low-pass filter rings for a few frames after a jump.
+_RINGING = 16
 
 
 def guess_unit(skeleton: Skeleton) -> tuple[float, str]:
@@ -108,13 +110,20 @@ def synthetic_start(rotations: Array) -> int:
     """Count the rows of a synthetic pose (a T-pose, or all zero) put before the motion.
 
     They are rows in which most joints that move later stand at exactly no rotation, and from the
-    last of which the body jumps many times faster than it moves afterwards.
+    last of which the body jumps many times faster than it moves afterwards. Where the whole was
+    filtered afterwards, none stands exactly so any more, and the jump is smeared over some rows:
+    those in which the body comes straight from no rotation, faster than it ever moves again, and
+    in which the filter rings.
 
     Parameters
     ----------
     rotations
         (F, J, 4) local rotations.
     """
+    return _exact_start(rotations) or _smeared_start(rotations)
+
+
+def _exact_start(rotations: Array) -> int:
     early = rotations[:_EARLY]
     if len(early) < _LATEST_START * 2:
         return 0
@@ -131,3 +140,26 @@ def synthetic_start(rotations: Array) -> int:
         if not unturned[rows] and jumps[rows - 1] > max(np.radians(3), 8 * pace):
             return rows
     return 0
+
+
+def _smeared_start(rotations: Array) -> int:
+    early = rotations[: 2 * _RINGING]
+    if len(early) < 2 * _RINGING:
+        return 0
+    step = rot.angle(early[1:], early[:-1])
+    moving = step.max(axis=0) > 1e-4
+    speed = step[:, moving].mean(axis=1) if moving.sum() >= 4 else np.zeros(len(step))
+    afterwards = float(np.median(speed[_RINGING // 2 :]))
+    if speed[0] < max(np.radians(3), 8 * afterwards):
+        return 0
+    # One slow step alone is where the ringing turns round.
+    slow = speed[: _RINGING + 1] < 2 * afterwards
+    settled = np.flatnonzero(slow[1:] & slow[:-1])
+    rows = int(settled[0]) if len(settled) else _RINGING
+    turned = rot.angle(early[[0, 1, rows]][:, moving], rot.IDENTITY).mean(axis=1)
+    left = rot.angle(early[:2, moving], early[rows, moving]).mean(axis=1)
+    is_straight = bool((turned[:2] + left < 1.1 * turned[2]).all())
+    if not is_straight or turned[0] > turned[2] / 2:
+        return 0
+    every = rot.angle(rotations[rows + 1 :, moving], rotations[rows:-1, moving]).mean(axis=1)
+    return rows if speed[0] > 2 * np.quantile(every, 0.99) else 0

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.signal import butter, sosfiltfilt
 
 from mocapstudio.formats.guesses import guess_unit, synthetic_start
 from mocapstudio.motion import rotations as rot
@@ -58,6 +59,24 @@ def test_a_t_pose_before_the_motion() -> None:
         assert synthetic_start(started) == rows
 
 
+@pytest.mark.parametrize("cutoff", [8.0, 12.0, 20.0])
+def test_a_t_pose_that_a_filter_has_smeared(cutoff: float) -> None:
+    vectors = rot.to_rotation_vector(dance())
+    vectors[:2] = 0.0
+    low_pass = butter(2, cutoff, fs=120, output="sos")
+    smeared = rot.from_rotation_vector(sosfiltfilt(low_pass, vectors, axis=0, padtype="constant"))
+    rows = synthetic_start(smeared)
+    assert 3 <= rows <= 16
+    off = rot.angle(smeared[rows:-10], dance()[rows:-10]).mean(axis=1)
+    assert off.max() < 0.1 * rot.angle(dance()[0], rot.IDENTITY).mean()
+
+
+def test_a_filtered_dance_has_no_t_pose() -> None:
+    vectors = rot.to_rotation_vector(dance())
+    low_pass = butter(2, 12.0, fs=120, output="sos")
+    assert synthetic_start(rot.from_rotation_vector(sosfiltfilt(low_pass, vectors, axis=0))) == 0
+
+
 def test_a_performer_who_leaves_a_t_pose_is_no_synthetic_row() -> None:
     motion = dance()
     slowly = np.clip(np.arange(200) / 100, 0, 1)[:, None]
@@ -71,6 +90,14 @@ def test_a_pop_in_the_second_frame_is_no_t_pose() -> None:
     motion = dance()
     motion[0] = rot.multiply(motion[0], rot.from_rotation_vector(np.array([0.6, 0.2, 0.1])))
     assert synthetic_start(motion) == 0
+
+
+def test_a_filtered_pop_at_the_start_is_no_t_pose() -> None:
+    vectors = rot.to_rotation_vector(dance())
+    vectors[:2] += np.array([0.6, 0.2, 0.1])
+    low_pass = butter(2, 12.0, fs=120, output="sos")
+    popping = sosfiltfilt(low_pass, vectors, axis=0, padtype="constant")
+    assert synthetic_start(rot.from_rotation_vector(popping)) == 0
 
 
 def test_short_and_still_takes_have_no_t_pose() -> None:
