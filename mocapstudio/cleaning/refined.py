@@ -29,9 +29,9 @@ def detect_refined(
 ) -> Generator[Progress, None, Analysis]:
     """Do what `detect` does, with a decision learnt from the context.
 
-    The first time learning takes some ten seconds; what was learnt is kept by the content of the
-    context. Where there is too little to learn from, and in the paper's mode, the plain map is
-    drawn.
+    The first time learning takes a while, from a small context some 14 to 50 s on two cores; what
+    was learnt is kept by the content of the context. Where there is too little to learn from, and
+    in the paper's mode, the plain map is drawn.
 
     Parameters
     ----------
