@@ -85,6 +85,22 @@ class DragResult:
     declared: tuple[Declared, ...]
 
 
+@dataclass(frozen=True, eq=False)
+class KeptFrame:
+    """A frame as it was dragged.
+
+    Attributes
+    ----------
+    frame
+        Of the take.
+    departure
+        (n,) what it departs by from the take, see `Freedom`.
+    """
+
+    frame: int
+    departure: Array
+
+
 class Drag:
     """One drag, from press to release.
 
@@ -129,6 +145,11 @@ class Drag:
         self._free = self._freedom(whole_body)
         self._view, self._wishes = self._laid(frame, frame + 1)
         self._unknowns = np.zeros((1, self._free.size))
+
+    @property
+    def kept(self) -> KeptFrame:
+        """The frame as it looks now."""
+        return KeptFrame(self._frame, self._unknowns[0].copy())
 
     def to(self, target: Array) -> DragPose:
         """Pose the frame with the dragged point at `target` (3,) metres, or as near as it gets."""

@@ -143,7 +143,7 @@ def clean(
     return SkateResult(
         cleaned,
         declared_changes(take, departures),
-        tuple(_unreached(cleaned, laid)),
+        tuple(unreached(cleaned, laid)),
         slide(take, cleaned, laid),
         _turned(departures, take),
         max((float(d.distance.max(initial=0.0)) for d in departures), default=0.0),
@@ -172,7 +172,8 @@ def _solve_window(
     return Departure(span, problem, solution.unknowns), inside
 
 
-def _unreached(cleaned: Take, laid: Sequence[Hold]) -> Iterable[Unreached]:
+def unreached(cleaned: Take, laid: Sequence[Hold]) -> Iterable[Unreached]:
+    """Tell which contacts a take does not meet."""
     for hold, place in zip(laid, places(cleaned, laid), strict=True):
         gap = hold.unmet(place)
         if gap.max() > _MET:
