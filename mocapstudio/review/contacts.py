@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 
 from mocapstudio.cleaning.contacts.changes import METHOD
-from mocapstudio.cleaning.contacts.model import Contact, ContactPoint
+from mocapstudio.cleaning.contacts.model import Contact, ContactPoint, Target
 from mocapstudio.cleaning.model import Proposal
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.take import Take
 from mocapstudio.review import decisions
 from mocapstudio.review.core import Core, new_id
-from mocapstudio.review.model import OwnContact, OwnPoints
+from mocapstudio.review.model import Edit, OwnContact, OwnPoints
 from mocapstudio.review.rows import check_rows, check_span
 
 KEY_POSE = "key pose"
@@ -160,6 +160,32 @@ class Contacting(Core):
         )
         self._commit("Solve contacts", replace(sitting, edits=(*kept, *edits)))
 
+    def move_target(self, contact_id: str, target: Target, proposals: Sequence[Proposal]) -> None:
+        """Give a contact of the active performer another target, and the take what meets it.
+
+        One step. Where the last solve, or an earlier move, said something else about the same
+        samples, this counts.
+
+        Raises
+        ------
+        MocapError
+            If there is no such contact, or it reaches into a protected span.
+        """
+        performer, stamp, sitting = self._state.active, self._stamp(), self._history.present
+        take, old = self._take(performer), self._contact(contact_id)
+        new = replace(old, target=target, drawn=True, confidence=1.0)
+        edits = tuple(
+            decisions.edit_of(take, performer, one, stamp, new_id(), None) for one in proposals
+        )
+        kept = tuple(
+            one
+            for one in sitting.edits
+            if one.performer != performer
+            or one.method != METHOD
+            or not any(_covers(edit, one) for edit in edits)
+        )
+        self._commit_contacts("Move target", gone=(old.id,), new=(new,), edits=(*kept, *edits))
+
     def add_key_pose(self, proposals: Sequence[Proposal]) -> None:
         """Put what was dragged in the viewport over the active take."""
         performer, stamp, sitting = self._state.active, self._stamp(), self._history.present
@@ -204,6 +230,16 @@ class Contacting(Core):
 def _overlap(one: Contact, other: Contact) -> bool:
     same = (one.joint, one.point) == (other.joint, other.point)
     return same and one.start < other.end and other.start < one.end
+
+
+def _covers(edit: Edit, other: Edit) -> bool:
+    """Tell whether an edit replaces every sample that another one of the same take replaces."""
+    return (
+        set(other.joints) <= set(edit.joints)
+        and edit.start <= other.start
+        and other.end <= edit.end
+        and (other.translations is None or edit.translations is not None)
+    )
 
 
 def _whole(contact: Contact) -> Contact:

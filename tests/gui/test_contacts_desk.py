@@ -14,6 +14,7 @@ from PySide6.QtTest import QTest
 
 from mocapstudio import formats
 from mocapstudio.cleaning.contacts.model import Contact, Fixed, Floor, Following
+from mocapstudio.cleaning.contacts.points import point_positions
 from mocapstudio.cleaning.contacts.slide import measure_slide
 from mocapstudio.evaluation.contacts_cases import made_case
 from mocapstudio.motion import rotations as rot
@@ -84,7 +85,8 @@ class Contacts:
 
     def solved(self) -> bool:
         reading = self.space.readings.now
-        return reading.solved and reading.after is self.result
+        done = self.state.can_undo == "Solve contacts"
+        return done and reading.solved and reading.after is self.result
 
     def at(self, contact: Contact, share: float) -> QPointF:
         """A place on a contact of the lanes: 0 its left edge, 1 its right edge."""
@@ -121,6 +123,8 @@ class Contacts:
         for key in keys:
             self.hands.key(key)
         mouse.send(canvas, mouse.QEvent.Type.MouseButtonRelease, begin + way, held, mouse.NOTHING)
+        # Until the body meets it, the target is shown where it was let go.
+        self.hands.see(lambda: self.space.bridge.ui.held is None)
 
     def choose_kind(self, words: str) -> None:
         self.hands.choose("contact-kind", words)
@@ -299,18 +303,64 @@ def test_an_axis_is_locked_and_a_drag_given_up(hands: Hands, slipping: Path) -> 
     names, places = stage.places()
     number = names.index("LeftHand palm")
     begin = stage.pixel_of(places[number])
-    canvas = stage.dragging.parent()
+    canvas, rotations = stage.dragging.parent(), user.result.rotations
     mouse.drag(canvas, begin, begin + QPointF(12, -16))
     assert user.state.can_undo == "Key pose"
-    hands.see(lambda: user.space.readings.now.after is not user.space.readings.now.source)
-    hands.see(
-        lambda: not np.array_equal(user.space.readings.now.after.rotations,
-                                   user.state.take.rotations)
-    )  # fmt: skip
+    hands.see(lambda: np.array_equal(user.space.readings.now.after.rotations,
+                                     user.result.rotations))  # fmt: skip
     seen = stage.pixel_of(stage.places()[1][number]) - (begin + QPointF(12, -16))
     assert abs(seen.x()) + abs(seen.y()) < 3.0
     hands.press("Z", CTRL)
-    np.testing.assert_array_equal(user.result.rotations, user.state.take.rotations)
+    np.testing.assert_array_equal(user.result.rotations, rotations)
+
+
+def test_the_body_follows_a_dragged_target_and_stays_when_it_is_let_go(
+    hands: Hands, slipping: Path
+) -> None:
+    user = Contacts(hands, slipping)
+    user.detect()
+    ball = of(user.contacts(), "RightToe", "ball")
+    user.click_contact(ball)
+    user.document.set_frame(60)
+    hands.choose("contact-kind", "Fixed point")
+    fixed = next(c for c in user.contacts() if c.id == ball.id)
+    stage, before, sitting = user.space.stage, user.result, user.state.sitting
+    was = stage.director.points(60).copy()
+    elsewhere = stage.director.points(30).copy()
+
+    # While the button is held: the foot goes along, at this frame alone, and nothing is kept.
+    canvas, begin, held = stage.dragging.parent(), user.marker(fixed), mouse.LEFT
+    end = begin + QPointF(14.0, -30.0)
+    mouse.send(canvas, mouse.QEvent.Type.MouseButtonPress, begin, held, held)
+    for share in (0.4, 1.0):
+        at = begin + (end - begin) * share
+        mouse.send(canvas, mouse.QEvent.Type.MouseMove, at, mouse.NOTHING, held)
+    bent = stage.director.points(60).copy()
+    foot = user.state.take.skeleton.index["RightToe"]
+    assert np.linalg.norm(bent[foot] - was[foot]) > 0.03
+    np.testing.assert_array_equal(stage.director.points(30), elsewhere)
+    assert user.state.sitting is sitting
+    reached = stage.pixel_of(stage.bending.place_at(60)) - end
+    assert abs(reached.x()) + abs(reached.y()) < 1.5
+
+    # Let go: one step, and the frame looks as it did under the hand.
+    mouse.send(canvas, mouse.QEvent.Type.MouseButtonRelease, end, held, mouse.NOTHING)
+    hands.see(lambda: user.space.bridge.ui.held is None)
+    assert user.state.can_undo == "Move target"
+    np.testing.assert_allclose(stage.director.points(60), bent, atol=1e-3)
+    moved = next(c for c in user.contacts() if c.id == ball.id)
+    reading = user.space.readings.now
+    positions = point_positions(user.result, reading.points)[moved.start : moved.end]
+    number = [p.key for p in reading.points].index(("RightToe", "ball"))
+    away = np.linalg.norm(positions[:, number] - moved.target.position, axis=1)
+    assert away.max() < 1e-3
+    # Only its own leg moved.
+    changed = np.flatnonzero((user.result.rotations != before.rotations).any(axis=(0, 2)))
+    assert {user.state.take.skeleton.names[j][:5] for j in changed} == {"Right"}
+    np.testing.assert_array_equal(user.result.translations, before.translations)
+    hands.press("Z", CTRL)
+    np.testing.assert_array_equal(user.result.rotations, before.rotations)
+    assert next(c for c in user.contacts() if c.id == ball.id).target == fixed.target
 
 
 @pytest.fixture

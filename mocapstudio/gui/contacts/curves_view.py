@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QFrame, QGraphicsItem, QGridLayout, QLabel, QVBoxL
 
 from mocapstudio.cleaning.contacts.model import Contact
 from mocapstudio.gui import theme as themes
-from mocapstudio.gui.contacts.bridge import ContactsBridge
+from mocapstudio.gui.contacts.bridge import ContactsBridge, ContactsUi
 from mocapstudio.gui.contacts.lanes import key_of, lanes_of
 from mocapstudio.gui.contacts.measuring import Measured, measured
 from mocapstudio.gui.contacts.reading import Readings
@@ -24,7 +24,8 @@ from mocapstudio.gui.plots.time_plot import RIGHT_GUTTER, TimePlot
 from mocapstudio.gui.plots.time_range import TimeRange
 from mocapstudio.review.state import DocumentState
 
-_PAUSE = 30
+_PAUSE, _DRAGGED = 30, 100
+"""Milliseconds after which curves follow a change, and while something is dragged."""
 _LEAST = {"slide": 2.0, "gap": 2.0}
 _TITLES = {"slide": "Slide, cm/s", "gap": "Gap, mm"}
 _WORDS = {
@@ -78,10 +79,9 @@ class CurvesView(QWidget):
         self.setMinimumHeight(110)
         self._soon = QTimer(self)
         self._soon.setSingleShot(True)
-        self._soon.setInterval(_PAUSE)
         self._soon.timeout.connect(self.refresh)
         bridge.desk.changed.connect(self._follow)
-        bridge.ui_changed.connect(lambda _old, _new: self._soon.start())
+        bridge.ui_changed.connect(self._follow_ui)
         readings.changed.connect(self.refresh)
         time_range.changed.connect(self._fit)
         self.refresh()
@@ -129,11 +129,17 @@ class CurvesView(QWidget):
 
     def _follow(self, old: DocumentState, new: DocumentState) -> None:
         if old.sitting is not new.sitting or old.active != new.active or old.take is not new.take:
-            self._soon.start()
+            self._soon.start(_PAUSE)
         if old.frame != new.frame:
             for plot in self.plots.values():
                 plot.set_frame(new.frame)
             self._read_out(new.frame)
+
+    def _follow_ui(self, _old: ContactsUi, new: ContactsUi) -> None:
+        if new.held is None:
+            self._soon.start(_PAUSE)
+        elif not self._soon.isActive():
+            self._soon.start(_DRAGGED)
 
     def _fit(self) -> None:
         for plot in self.plots.values():

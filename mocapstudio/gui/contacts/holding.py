@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapstudio.cleaning.contacts.model import Contact, Floor, Following, Target
+from mocapstudio.gui.contacts.bending import Bending
 from mocapstudio.gui.contacts.bridge import ContactsBridge
+from mocapstudio.gui.contacts.posing import short_by
 from mocapstudio.gui.contacts.reading import Reading, Readings
-from mocapstudio.gui.contacts.targets import joints_at, moved, triple
+from mocapstudio.gui.contacts.targets import joints_at, moved, place_at, triple
 from mocapstudio.gui.viewport.camera import Turntable
 from mocapstudio.gui.viewport.picking import joint_at
 from mocapstudio.motion import rotations as rot
@@ -32,6 +34,8 @@ class Holding:
         Is told of the contact as it looks while it is dragged.
     readings
         Points of the take under review.
+    bending
+        Shows the body as it reaches for the target.
     camera, size
         Through which the scene is seen, and the picture's width and height in pixels.
     """
@@ -40,20 +44,28 @@ class Holding:
         self,
         bridge: ContactsBridge,
         readings: Readings,
+        bending: Bending,
         camera: Turntable,
         size: Callable[[], tuple[int, int]],
     ) -> None:
-        self._bridge, self._readings = bridge, readings
+        self._bridge, self._readings, self._bending = bridge, readings, bending
         self._camera, self._size = camera, size
         self._contact: Contact | None = None
 
     def taken(self, contact_id: str) -> bool:
-        """Take hold of a contact's target."""
-        self._contact = self._bridge.contact(contact_id)
-        return self._contact is not None and self._readings.now is not None
+        """Take hold of a contact's target; the body follows where the contact is in force."""
+        contact, reading = self._bridge.contact(contact_id), self._readings.now
+        # What was let go just now is still being met.
+        if contact is None or reading is None or self._bridge.ui.held is not None:
+            return False
+        self._contact = contact
+        frame = self._bridge.desk.state.frame
+        if contact.start <= frame < contact.end and not reading.trouble(contact):
+            self._bending.begin(reading, frame, reading.point(contact))
+        return True
 
     def dragged(self, place: Array, lock: int | None, mouse: tuple[float, float]) -> str:
-        """Bring the target to a place; returns what it snapped to, in words."""
+        """Bring the target to a place; returns what it snapped to and how far the body gets."""
         reading, contact = self._readings.now, self._contact
         if reading is None or contact is None:
             return ""
@@ -63,19 +75,22 @@ class Holding:
             words, target = self._snapped(reading, contact, place, lock, mouse, frame)
         if target is None:
             target = moved(reading, contact, place, frame, upright=lock == 1)
-        self._bridge.set_ui(held=replace(contact, target=target, drawn=True, confidence=1.0))
-        return words
+        held = replace(contact, target=target, drawn=True, confidence=1.0)
+        self._bridge.set_ui(held=held)
+        there = place_at(reading, held, frame)
+        pose = None if there is None else self._bending.to(there)
+        short = "" if pose is None else short_by(pose.gap)
+        return " · ".join(filter(None, (words and f"on {words}", short)))
 
-    def dropped(self) -> None:
-        """Let the change become a step of the sitting."""
-        held, self._contact = self._bridge.ui.held, None
-        self._bridge.set_ui(held=None)
-        if held is not None:
-            self._bridge.desk.document.change_contact(held.id, "Move target", target=held.target)
+    def dropped(self) -> Contact | None:
+        """Let go; returns the contact with its new target, which is shown until it is met."""
+        self._contact = None
+        return self._bridge.ui.held
 
     def cancelled(self) -> None:
         """Leave the contact as it was."""
         self._contact = None
+        self._bending.end()
         self._bridge.set_ui(held=None)
 
     def _snapped(
@@ -104,7 +119,7 @@ class Holding:
         floor = self._floor(contact)
         if lock in (None, 1) and floor is not None and abs(place[1] - floor) < _FLOOR:
             level = np.array([place[0], floor, place[2]])
-            return "floor", moved(reading, contact, level, frame, upright=lock == 1)
+            return "the floor", moved(reading, contact, level, frame, upright=lock == 1)
         return "", None
 
     def _floor(self, contact: Contact) -> float | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QSignalBlocker, Qt
+from PySide6.QtCore import QSignalBlocker, Qt, QTimer
 from PySide6.QtWidgets import (
     QComboBox,
     QFrame,
@@ -28,6 +28,8 @@ from mocapstudio.gui.widgets.parts import header, label, rule
 from mocapstudio.motion.take import Take
 from mocapstudio.review.state import DocumentState
 
+_DRAGGED = 100
+"""Milliseconds between two looks at a contact that is being dragged."""
 _KINDS = {
     "fixed": "Fixed point",
     "floor": "Floor",
@@ -71,6 +73,10 @@ class ContactInspector(QFrame):
         self._trouble = label("", "muted", "contact-trouble", wrap=True)
         self._summary = label("", "muted", "contacts-summary", wrap=True)
         self._whole = _Figures()
+        self._soon = QTimer(self)
+        self._soon.setSingleShot(True)
+        self._soon.setInterval(_DRAGGED)
+        self._soon.timeout.connect(self._show)
         self._pages = QStackedWidget()
         self._pages.addWidget(self._make_summary(actions))
         self._pages.addWidget(self._make_contact(actions))
@@ -90,10 +96,14 @@ class ContactInspector(QFrame):
         if old.sitting is not new.sitting or old.take is not new.take:
             self._show()
 
-    def _follow_ui(self, _old: ContactsUi, _new: ContactsUi) -> None:
-        self._show()
+    def _follow_ui(self, old: ContactsUi, new: ContactsUi) -> None:
+        if old.held is None or new.held is None:
+            self._show()
+        elif not self._soon.isActive():
+            self._soon.start()
 
     def _show(self) -> None:
+        self._soon.stop()
         contact, take = self._bridge.chosen, self._bridge.desk.state.take
         if contact is None or take is None:
             self._pages.setCurrentIndex(0)

@@ -72,6 +72,13 @@ def draw_rows(p: QPainter, area: QRectF, lanes: Sequence[Lane], chosen: Collecti
         p.drawLine(row.bottomLeft(), row.bottomRight())
 
 
+def seen_of(contact: Contact) -> tuple[object, ...]:
+    """Return what a contact's bar depends on."""
+    kind = type(contact.target), kind_words(contact.target)
+    span = contact.id, contact.joint, contact.point, contact.start, contact.end
+    return *span, *kind, contact.confidence, contact.drawn
+
+
 def draw_bar(p: QPainter, bar: Bar, *, chosen: bool, hovered: bool, unmet: bool) -> None:
     """Draw one contact: its colour tells the target's kind, its strength how sure it is."""
     look = themes.current()

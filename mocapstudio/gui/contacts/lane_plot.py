@@ -66,6 +66,7 @@ class LanePlot(TimePlot):
     def __init__(self, time_range: TimeRange) -> None:
         self.lanes: tuple[Lane, ...] = ()
         self.contacts: tuple[Contact, ...] = ()
+        self._seen: list[tuple[object, ...]] = []
         self._chosen: frozenset[str] = frozenset()
         self._unmet: frozenset[str] = frozenset()
         self._trim: tuple[int, int] | None = None
@@ -86,9 +87,12 @@ class LanePlot(TimePlot):
         """Show other lanes, contacts, choice, or trim."""
         if (lanes, chosen, trim) != (self.lanes, self._chosen, self._trim):
             self._ground.refresh()
-        changed = (contacts, chosen, unmet, lanes, trim) != (
-            self.contacts, self._chosen, self._unmet, self.lanes, self._trim
+        # Where a target is does not show on a lane, and is dragged at every move of the mouse.
+        bars = [lane_drawing.seen_of(one) for one in contacts]
+        changed = (bars, chosen, unmet, lanes, trim) != (
+            self._seen, self._chosen, self._unmet, self.lanes, self._trim
         )  # fmt: skip
+        self._seen = bars
         self.lanes, self.contacts = lanes, contacts
         self._chosen, self._unmet, self._trim = chosen, unmet, trim
         if changed:

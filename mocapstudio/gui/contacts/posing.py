@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
-
 import numpy as np
 from numpy.typing import NDArray
 
 from mocapstudio.cleaning.contacts.changes import as_proposals
 from mocapstudio.cleaning.contacts.model import ContactPoint
-from mocapstudio.cleaning.contacts.points import point_positions
-from mocapstudio.cleaning.ik.drag import Drag, DragPose
+from mocapstudio.gui.contacts.bending import Bending, carried
 from mocapstudio.gui.contacts.bridge import ContactsBridge
 from mocapstudio.gui.contacts.reading import Readings
-from mocapstudio.gui.viewport.cast import Part, Role
-from mocapstudio.gui.viewport.world import Points, WorldMotion
-from mocapstudio.motion.take import Take
 
 Array = NDArray[np.float64]
 
@@ -33,28 +26,22 @@ class Posing:
         To the document.
     readings
         Points of the take under review.
-    show
-        Called when `shown` would say something else.
+    bending
+        Shows the body as it is dragged.
     """
 
-    def __init__(
-        self, bridge: ContactsBridge, readings: Readings, show: Callable[[], None]
-    ) -> None:
-        self._bridge, self._readings, self._show = bridge, readings, show
-        self._drag: Drag | None = None
-        self._pose: DragPose | None = None
-        self._frame = 0
+    def __init__(self, bridge: ContactsBridge, readings: Readings, bending: Bending) -> None:
+        self._bridge, self._readings, self._bending = bridge, readings, bending
 
     def places(self, frame: int) -> tuple[list[str], Array]:
         """Names and (P, 3) places of hands and feet at a frame, as they are shown."""
-        reading = self._readings.now
+        reading, pose = self._readings.now, self._bending.pose
         if reading is None:
             return [], np.zeros((0, 3))
         names = [f"{point.joint} {point.point or ''}".strip() for point in reading.points]
-        places = reading.places_after[min(frame, len(reading.places_after) - 1)]
-        if self._pose is not None and frame == self._frame:
-            places = point_positions(self._pose.take, reading.points)[0]
-        return names, places
+        if pose is not None and frame == self._bending.frame:
+            return names, carried(pose, reading.points)
+        return names, reading.places_after[min(frame, len(reading.places_after) - 1)]
 
     def taken(self, name: str) -> bool:
         """Take hold of a hand or foot at the current frame."""
@@ -64,50 +51,30 @@ class Posing:
         names, _ = self.places(frame)
         point = reading.points[names.index(name)]
         pins = [one for one in reading.points if _foot(one) and one.joint != point.joint]
-        self._frame = frame
-        self._drag = Drag(reading.after, frame, point, pins=pins, ranges=reading.ranges)
+        self._bending.begin(reading, frame, point, pins=pins)
         return True
 
-    def dragged(self, place: Array) -> None:
-        """Pose the frame with what is held at a place, or as near as it gets."""
-        if self._drag is not None:
-            self._pose = self._drag.to(place)
-            self._show()
+    def dragged(self, place: Array) -> str:
+        """Pose the frame with what is held at a place; says how far it falls short."""
+        pose = self._bending.to(place)
+        return "" if pose is None else short_by(pose.gap)
 
     def dropped(self) -> None:
         """Make an edit of it."""
-        drag, self._drag = self._drag, None
-        moved, self._pose = self._pose, None
-        if drag is not None and moved is not None:
-            result = drag.release(FALLOFF)
+        result = self._bending.released(FALLOFF)
+        if result is not None:
             proposals = as_proposals(result.take, result.declared)
             self._bridge.desk.document.add_key_pose(proposals)
-        self._show()
+        self._bending.end()
 
     def cancelled(self) -> None:
         """Leave the take as it was."""
-        if self._drag is not None:
-            self._drag = self._pose = None
-            self._show()
-
-    def shown(self, roles: Sequence[Role]) -> tuple[Role, ...] | None:
-        """Return the roles with the performer posed as it is dragged; None while nothing is."""
-        if self._pose is None or not roles or roles[0].part is not Part.RESULT:
-            return None
-        motion = _Posed(roles[0].motion.take, self._frame, self._pose.take)
-        return (replace(roles[0], motion=motion), *roles[1:])
+        self._bending.end()
 
 
-class _Posed(WorldMotion):
-    """A take with one frame posed otherwise."""
-
-    def __init__(self, take: Take, frame: int, pose: Take) -> None:
-        super().__init__(take)
-        self._at, self._instead = frame, WorldMotion(pose)
-
-    def points(self, frame: int) -> Points:
-        """(J + E, 3) metres at a frame of the take, in the world."""
-        return self._instead.points(0) if frame == self._at else super().points(frame)
+def short_by(gap: float) -> str:
+    """Say how far a dragged point stays short of the mouse, metres; nothing within reach."""
+    return f"out of reach by {1000 * gap:.0f} mm" if gap > 1e-3 else ""
 
 
 def _foot(point: ContactPoint) -> bool:

@@ -7,11 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QPointF, Qt
+from PySide6.QtCore import QPointF, Qt, Signal
 from PySide6.QtWidgets import QToolTip
 
 from mocapstudio.cleaning.contacts.model import Contact
 from mocapstudio.gui import theme
+from mocapstudio.gui.contacts.bending import Bending
 from mocapstudio.gui.contacts.bridge import ContactsBridge, ContactsUi
 from mocapstudio.gui.contacts.dragging import Dragging
 from mocapstudio.gui.contacts.holding import Holding
@@ -21,6 +22,7 @@ from mocapstudio.gui.contacts.posing import Posing
 from mocapstudio.gui.contacts.reading import Readings
 from mocapstudio.gui.contacts.targets import place_at
 from mocapstudio.gui.viewport.palette import rgb
+from mocapstudio.gui.viewport.world import StandIn, WorldMotion
 from mocapstudio.gui.views.viewport import Viewport
 from mocapstudio.review.state import DocumentState
 
@@ -41,15 +43,18 @@ class ContactsStage(Viewport):
         Points of the take under review.
     """
 
+    target_dropped = Signal(object, object)
+    """Emitted once a target is let go, with its contact as it was dragged and the `KeptFrame`."""
+
     def __init__(self, bridge: ContactsBridge, readings: Readings) -> None:
         self._contacts, self._readings = bridge, readings
         self.overlay: Overlay | None = None
         self.dragging: Dragging | None = None
         super().__init__(bridge.desk)
         self.setObjectName("contacts-viewport")
-        self.holding = Holding(bridge, readings, self.camera, self._picture_size)
-        self.posing = Posing(bridge, readings, self._show_pose)
-        self._posed: Array | None = None
+        self.bending = Bending(self._motion, self._stand_in)
+        self.holding = Holding(bridge, readings, self.bending, self.camera, self._picture_size)
+        self.posing = Posing(bridge, readings, self.bending)
         if self._canvas is not None:
             self.overlay = Overlay(self._canvas.renderer)
             self.dragging = Dragging(self._canvas, self.camera, self, self._stir)
@@ -75,9 +80,9 @@ class ContactsStage(Viewport):
     def dragged(self, name: str, place: Array, lock: int | None, mouse: QPointF) -> None:
         """Bring what is held to a place."""
         if self._contacts.ui.posing:
-            self.posing.dragged(place)
-            return
-        words = self.holding.dragged(place, lock, (mouse.x(), mouse.y()))
+            words = self.posing.dragged(place)
+        else:
+            words = self.holding.dragged(place, lock, (mouse.x(), mouse.y()))
         if self._canvas is not None and words:
             QToolTip.showText(self._canvas.mapToGlobal(mouse.toPoint()), words, self._canvas)
         else:
@@ -85,10 +90,13 @@ class ContactsStage(Viewport):
 
     def dropped(self, name: str) -> None:
         """Let it become an edit."""
+        QToolTip.hideText()
         if self._contacts.ui.posing:
             self.posing.dropped()
-        else:
-            self.holding.dropped()
+            return
+        held = self.holding.dropped()
+        if held is not None:
+            self.target_dropped.emit(held, self.bending.kept)
 
     def cancelled(self, name: str) -> None:
         """Leave everything as it was."""
@@ -125,6 +133,8 @@ class ContactsStage(Viewport):
     def _cast(self, state: DocumentState) -> None:
         # The body's colours are the digression map's elsewhere; here they would say nothing.
         super()._cast(replace(state, analyses={}))
+        if self.bending.shown is not None:
+            self._stand_in(self.bending.shown)
 
     def _prepare(self) -> None:
         super()._prepare()
@@ -141,7 +151,10 @@ class ContactsStage(Viewport):
         reading, frame = self._readings.now, self._bridge.state.frame
         chosen = self._contacts.chosen
         point = None
-        if reading is not None and contact.start <= frame < contact.end:
+        held = self._contacts.ui.held
+        if held is not None and contact.id == held.id:
+            point = self.bending.place_at(frame)
+        if point is None and reading is not None and contact.start <= frame < contact.end:
             point = reading.place(contact, after=True)[frame - contact.start]
         colour = rgb(kind_colour(theme.current(), contact.target))
         return Mark(place, point, colour, chosen is not None and contact.id == chosen.id)
@@ -155,19 +168,23 @@ class ContactsStage(Viewport):
             return None
         return places[list(names).index(drag.holding)], (drag.lock,)
 
-    def _show_pose(self) -> None:
-        """Show the body as it is dragged, or as it is."""
-        self._recast()
+    def _motion(self) -> WorldMotion | None:
+        roles = self.director.roles
+        return roles[0].motion if roles else None
 
-    def _recast(self) -> None:
-        super()._recast()
-        preview = self.posing.shown(self.director.roles)
-        if preview is not None and self._scene is not None:
-            self.director.roles = preview
-            self._scene.cast(preview, self._palette)
+    def _stand_in(self, motion: StandIn | None) -> None:
+        """Show the body as it is dragged, or as it is."""
+        if motion is None:
+            self._recast()
+        else:
+            self.director.stand_in(motion)
+            if self._scene is not None:
+                self._scene.stand_in(motion)
             self._stir()
 
     def _follow_contacts(self, old: ContactsUi, new: ContactsUi) -> None:
+        if old.held is not None and new.held is None:
+            self.bending.end()
         self._stir()
 
     def _hover(self, at: QPointF) -> None:

@@ -10,7 +10,9 @@ from PySide6.QtCore import QObject
 from mocapstudio.cleaning.contacts.changes import as_proposals
 from mocapstudio.cleaning.contacts.detection import detecting
 from mocapstudio.cleaning.contacts.model import Contact, ContactPoint, Fixed
+from mocapstudio.cleaning.ik.drag import KeptFrame
 from mocapstudio.cleaning.ik.foot_skate import SkateResult, clean
+from mocapstudio.cleaning.ik.meet import Met, meet
 from mocapstudio.gui.contacts.bridge import ContactsBridge
 from mocapstudio.gui.contacts.lanes import Key
 from mocapstudio.gui.contacts.reading import Reading, Readings
@@ -22,7 +24,7 @@ from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.take import Take
 from mocapstudio.review.model import Scene
 
-DETECT, SOLVE = "contacts-detect", "contacts-solve"
+DETECT, SOLVE, MEET = "contacts-detect", "contacts-solve", "contacts-meet"
 
 
 class Working(QObject):
@@ -49,8 +51,8 @@ class Working(QObject):
 
     @property
     def busy(self) -> bool:
-        """Whether contacts are being detected or solved."""
-        return any(job.key in (DETECT, SOLVE) for job in self._jobs.running)
+        """Whether contacts are being detected, solved or met."""
+        return any(job.key in (DETECT, SOLVE, MEET) for job in self._jobs.running)
 
     def detect(self) -> None:
         """Find contacts of the take under review; what was drawn stays."""
@@ -107,6 +109,61 @@ class Working(QObject):
         words = "The contacts could not be met"
         failed = partial(self._messages.complain, doing=words)
         self._jobs.start("Meeting contacts", work, solved, failed, key=SOLVE)
+
+    def meet(self, held: Contact, kept: KeptFrame | None) -> None:
+        """Give a contact the target it was dragged to, and bend its limb to it: one step.
+
+        The rest of the body stays as it is, and so does the frame that was dragged.
+        """
+        desk, reading = self._bridge.desk, self._readings.now
+        document, performer = desk.document, desk.state.active
+
+        def there() -> bool:
+            same = desk.document is document and desk.state.active == performer
+            return same and any(one.id == held.id for one in self._bridge.kept)
+
+        def move_only() -> None:
+            if there():
+                document.change_contact(held.id, "Move target", target=held.target)
+            self._bridge.set_ui(held=None)
+
+        base = document.result(performer)
+        if reading is None or reading.trouble(held) or not _same_motion(base, reading.after):
+            move_only()
+            return
+
+        def met(result: Met) -> None:
+            if not there() or not _same_motion(document.result(performer), base):
+                move_only()
+                return
+            try:
+                proposals = as_proposals(result.take, result.declared)
+                document.move_target(held.id, held.target, proposals)
+            except MocapError as error:
+                move_only()
+                self._messages.complain(error, "The body cannot follow the target")
+                return
+            others = (one for one in self._bridge.ui.unreached if one.contact != held.id)
+            self._bridge.set_ui(held=None, unreached=(*others, *result.unreached))
+            for one in result.unreached:
+                self._messages.tell(
+                    f"Out of reach by {one.millimetres:.0f} mm: the nearest pose was taken."
+                )
+
+        def failed(error: BaseException) -> None:
+            move_only()
+            self._messages.complain(error, "The body cannot follow the target")
+
+        work = meet(
+            base,
+            held,
+            reading.points,
+            others=reading.others,
+            ranges=reading.ranges,
+            kept=kept,
+        )
+        job = self._jobs.start("Meeting the contact", work, met, failed, key=MEET)
+        job.ended.connect(lambda: move_only() if job.cancelled else None)
 
     def draw(self, key: Key, start: int, end: int) -> None:
         """Add a contact that was drawn by hand, and choose it."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +16,7 @@ from mocapstudio.gui.viewport.look import Look
 from mocapstudio.gui.viewport.mapped import JointValues
 from mocapstudio.gui.viewport.palette import Colour, Palette
 from mocapstudio.gui.viewport.shaping import stature
-from mocapstudio.gui.viewport.world import Points
+from mocapstudio.gui.viewport.world import Points, WorldMotion
 from mocapstudio.motion.facing import ROOT_ROWS
 from mocapstudio.motion.skeleton import Skeleton
 from mocapstudio.motion.take import Take
@@ -53,6 +54,11 @@ class Director:
         self.roles = self._stage.cast(state, result, ghosts=ghosts, neighbours=neighbours)
         mapped = None if state.analysis is None else state.analysis.map
         self._values = None if mapped is None else JointValues(mapped, result.skeleton)
+
+    def stand_in(self, motion: WorldMotion) -> None:
+        """Let the performer under review move otherwise for now."""
+        if self.roles:
+            self.roles = (replace(self.roles[0], motion=motion), *self.roles[1:])
 
     @property
     def skeleton(self) -> Skeleton:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -99,6 +100,11 @@ class Scene3D:
         else:
             self._marks.show()
         self._floor.mesh.actor.SetVisibility(bool(roles))
+
+    def stand_in(self, motion: WorldMotion) -> None:
+        """Let the performer under review move otherwise for now; floor and colours stay."""
+        if self._roles:
+            self._roles = (replace(self._roles[0], motion=motion), *self._roles[1:])
 
     def _lay_floor(self, palette: Palette) -> None:
         shown = [r.motion for r in self._roles if r.part in (Part.RESULT, Part.PARTNER)]

@@ -82,6 +82,47 @@ class WorldMotion:
         return self._blocks[block]
 
 
+class StandIn(WorldMotion):
+    """A take with one frame posed otherwise for now; everything else is looked up in its motion.
+
+    Parameters
+    ----------
+    motion
+        Of the take.
+    frame
+        The frame that is posed otherwise.
+    points
+        (J + E, 3) metres: that pose.
+    """
+
+    def __init__(self, motion: WorldMotion, frame: int, points: Points) -> None:
+        super().__init__(motion.take)
+        self._motion: WorldMotion = motion
+        self._at, self._points = frame, points
+
+    def pose(self, points: Points) -> None:
+        """Pose the frame anew."""
+        self._points = points
+
+    def points(self, frame: int) -> Points:
+        """(J + E, 3) metres at a frame of the take, in the world."""
+        return self._points if frame == self._at else self._motion.points(frame)
+
+    def heading(self, frame: int) -> float:
+        """Radians about +Y that the hips face at a frame of the take; 0 faces +Z."""
+        return self._motion.heading(frame)
+
+    @cached_property
+    def hips_path(self) -> NDArray[np.float64]:
+        """(F, 3) metres: the hips of the take."""
+        return self._motion.hips_path
+
+    @cached_property
+    def followed(self) -> NDArray[np.float64]:
+        """(F, 3) metres: the hips of the take, smoothed, for a camera that follows."""
+        return self._motion.followed
+
+
 class WorldMotions:
     """The world positions of the takes in sight, one `WorldMotion` a take."""
 

@@ -57,6 +57,7 @@ class ContactsWorkspace(Workspace):
         self._lanes = 0
         self._lay_out()
         self.lanes.draw_wanted.connect(self.working.draw)
+        self.stage.target_dropped.connect(self.working.meet)
         filing = Filing(window, self.bridge, self.readings, window.messages)
         self.answering = Answering(self, filing)
         window.bridge.changed.connect(self._follow)
