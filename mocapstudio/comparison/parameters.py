@@ -25,8 +25,8 @@ TIMING_ONLY = frozenset({"tolerance", "window"})
 
 _SKIPPED = {
     CLOSED: "together",
-    REFERENCE: "reference may be longer",
-    SOURCE: "source may be longer",
+    REFERENCE: "skip reference",
+    SOURCE: "skip source",
 }
 
 
@@ -43,7 +43,7 @@ class ComparisonParameters:
     features: str = choice(
         BOX,
         "Poses",
-        {BOX: "normalised positions", ROOT: "root frame", ROTATIONS: "joint rotations"},
+        {BOX: "unit box", ROOT: "root frame", ROTATIONS: "rotations"},
         "What a pose is: positions in the frame of neck and head, scaled into the unit box (the"
         " paper's); positions in the frame of hips and heading, scaled likewise; or rotations of"
         " the joints",

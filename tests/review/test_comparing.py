@@ -254,3 +254,37 @@ def test_pooled_distances_are_those_of_mean_poses():
     near = pooled_distances(both, (20, 30), (10, 20), most=100)
     assert near.reference == (20, 1)
     np.testing.assert_allclose(near.values, expected[20:31, 10:21], atol=2e-3)
+
+
+def test_parameters_are_undone_and_void_what_they_change(sitting):
+    first = sitting.state.parameters
+    sitting.add_segment(10, 50, "step")
+    sitting.set_parameters(replace(first, features="root"))
+    assert sitting.state.linked is None
+    assert sitting.state.can_undo == "Change Poses"
+    assert sitting.finish(sitting.pending()[0], comparison((REFERENCE, SOURCE)))
+    sitting.undo()
+    assert sitting.state.parameters == first
+    assert sitting.state.linked is None
+    assert [one.name for one in sitting.state.segments] == ["step"]
+    sitting.redo()
+    assert sitting.state.parameters.features == "root"
+    sitting.set_parameters(first)
+    assert sitting.state.parameters == first
+
+
+def test_another_tolerance_only_times_anew(sitting):
+    path = sitting.state.comparison.path
+    for tolerance in (0.2, 0.3, 0.4):
+        sitting.set_parameters(replace(sitting.state.parameters, tolerance=tolerance))
+        assert sitting.state.comparison.path is path
+    sitting.undo()
+    assert sitting.state.parameters.tolerance == 0.1, "steps of one field are one step"
+
+
+def test_what_failed_can_be_tried_again(sitting, walk):
+    sitting.add_sources([shortened(walk, 90, "horse")])
+    sitting.fail(sitting.pending()[0], "cancelled")
+    sitting.compare_again()
+    assert [one.id for one in sitting.pending()] == ["horse"]
+    assert sitting.state.linked is not None, "what was compared stays"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 
+from mocapstudio.comparison.parameters import ComparisonParameters
 from mocapstudio.gui.compare.bridge import Alignment
 from mocapstudio.gui.compare.exporting import Exporting
 from mocapstudio.gui.compare.segmenting import Segmenting
@@ -51,6 +52,7 @@ class Answering(QObject):
             allowed=self._allowed(),
             checked={
                 "compare-true-speed": state.parameters.true_speed,
+                "compare-parameters": ui.parameters,
                 "compare-path": ui.along_path,
                 "compare-overlay": ui.overlay,
                 "compare-align-here": ui.alignment is Alignment.HERE,
@@ -80,6 +82,9 @@ class Answering(QObject):
             "open": True, "new": reference, "compare-reference": True, "compare-sources": True,
             "compare-scene": opened, "compare-swap": reference and source,
             "compare-remove": source, "compare-next": several, "compare-previous": several,
+            "compare-parameters": True,
+            "compare-defaults": state.parameters != ComparisonParameters(),
+            "compare-again": any(one.failure for one in state.sources),
             "compare-true-speed": True, "compare-path": True, "compare-overlay": True,
             "compare-align-here": True, "compare-align-all": True, "compare-align-none": True,
             "compare-differences": True, "compare-others": True, "compare-multiples": True,
@@ -140,6 +145,9 @@ class Answering(QObject):
 
         return {
             "compare-true-speed": self._switch_speed,
+            "compare-parameters": switch("parameters"),
+            "compare-defaults": partial(bridge.sitting.set_parameters, ComparisonParameters()),
+            "compare-again": bridge.sitting.compare_again,
             "compare-path": switch("along_path"),
             "compare-overlay": switch("overlay"),
             "compare-align-here": align(Alignment.HERE),

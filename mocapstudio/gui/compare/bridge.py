@@ -45,6 +45,8 @@ class CompareUi:
         Whether the other sources are drawn as well.
     follow
         Whether the camera goes along.
+    parameters
+        Whether the form of parameters stands in the place of the performances.
     matrix
         Whether the pose distances stand in the place of the table of segments.
     multiples
@@ -61,6 +63,7 @@ class CompareUi:
     differences: bool = True
     others: bool = False
     follow: bool = True
+    parameters: bool = False
     matrix: bool = False
     multiples: bool = False
 

@@ -20,6 +20,8 @@ from mocapstudio.review.comparing_state import only_view_differs
 
 Index = QModelIndex | QPersistentModelIndex
 
+_BUTTONS = ("compare-swap", "compare-reference", "compare-parameters")
+
 _COLUMNS = (
     ("", "Rank: the most alike first"),
     ("Source", "Name of the performance"),
@@ -159,7 +161,7 @@ class PerformancesView(QFrame):
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
-        buttons = [actions.tool_button(n) for n in ("compare-swap", "compare-reference")]
+        buttons = [actions.tool_button(n) for n in _BUTTONS]
         column.addWidget(header("Reference", *buttons))
         card = panel("", "")
         inner = QVBoxLayout(card)

@@ -9,9 +9,11 @@ from pathlib import Path
 from PySide6.QtCore import QObject, Signal
 
 from mocapstudio import formats
+from mocapstudio.comparison.masking import mask_of
 from mocapstudio.comparison.model import Comparison
 from mocapstudio.gui import settings
 from mocapstudio.gui.compare.bridge import CompareBridge
+from mocapstudio.gui.compare.flagging import Flagging
 from mocapstudio.gui.jobs import Jobs
 from mocapstudio.gui.messages import Messages
 from mocapstudio.gui.trouble import Trouble, understand
@@ -68,6 +70,8 @@ class Working(QObject):
     ----------
     bridge
         Where state comes from and results go.
+    flagging
+        Knows what is flagged in the performances.
     jobs
         Runs the work.
     messages
@@ -80,10 +84,16 @@ class Working(QObject):
     """Emitted with files that state no frame rate, and what to call with one (a Fraction)."""
 
     def __init__(
-        self, bridge: CompareBridge, jobs: Jobs, messages: Messages, parent: QObject
+        self,
+        bridge: CompareBridge,
+        flagging: Flagging,
+        jobs: Jobs,
+        messages: Messages,
+        parent: QObject,
     ) -> None:
         super().__init__(parent)
         self._bridge, self._jobs, self._messages = bridge, jobs, messages
+        self._flagging = flagging
         self._begun: set[Compared] = set()
         bridge.changed.connect(self._follow)
 
@@ -166,21 +176,49 @@ class Working(QObject):
         for one in self._begun - set(pending):
             self._jobs.cancel(_key(one))
         self._begun &= set(pending)
+        self._begin()
+
+    def _begin(self) -> None:
+        """Compare what is pending; what is flagged in it is found out first, where that counts."""
+        state, pending = self._bridge.state, self._bridge.sitting.pending()
+        if pending and state.parameters.masked and state.reference is not None:
+            everyone = [state.reference, *(one.take for one in pending)]
+            if any(self._flagging.of(one) is None for one in everyone):
+                self._flagging.find(everyone, self._begin, self._give_up)
+                return
+        self._flagging.stop()
         for one in pending:
             if one not in self._begun:
                 self._begun.add(one)
                 self._compare(one)
 
+    def _give_up(self) -> None:
+        """Nobody wants to wait for the flags."""
+        if self._bridge.state.parameters.masked:
+            for one in self._bridge.sitting.pending():
+                self._bridge.sitting.fail(one, "cancelled")
+
     def _compare(self, source: Compared) -> None:
         state = self._bridge.state
         assert state.reference is not None
         reference, parameters = state.reference, state.parameters
+        both = reference, source.take
+        masked = parameters.masked
+        flagged = [self._flagging.of(one) or () if masked else () for one in both]
 
         def work() -> Generator[Progress, None, Comparison]:
             yield Progress(0.0, f"comparing {source.id}")
             from mocapstudio.comparison.kata import compare
 
-            return (yield from compare(reference, source.take, parameters))
+            masks = [
+                mask_of(one, spans, parameters.features) if spans else None
+                for one, spans in zip(both, flagged, strict=True)
+            ]
+            return (
+                yield from compare(
+                    *both, parameters, reference_unreliable=masks[0], source_unreliable=masks[1]
+                )
+            )
 
         def failed(error: BaseException) -> None:
             self._begun.discard(source)

@@ -1,0 +1,63 @@
+"""The form of a comparison's parameters in a real window, by mouse and keys."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hands import CTRL
+from made_takes import paced, walking
+
+from mocapstudio.comparison.parameters import ComparisonParameters
+
+
+@pytest.fixture
+def hands(compare_hands):
+    """A user in the Compare workspace."""
+    return compare_hands
+
+
+@pytest.fixture
+def compare(hands):
+    """The workspace with a teacher and a pupil, compared."""
+    teacher = walking(seconds=4.0, rate=60, name="teacher")
+    pace = 1.0 + 0.35 * np.sin(np.arange(2 * teacher.frames) / 25.0)
+    workspace = hands.window.switching.front
+    workspace.working.take_in([teacher, replace(paced(teacher, pace), name="pupil")])
+    hands.see(lambda: workspace.bridge.state.linked is not None, 60)
+    return workspace
+
+
+def test_parameters_are_changed_undone_and_reset_in_the_form(hands, compare):
+    state = lambda: compare.bridge.state  # noqa: E731
+    hands.press("K")
+    before = state().comparison
+    hands.type("parameter-tolerance", "0.01")
+    assert state().parameters.tolerance == 0.01
+    assert state().comparison is not None, "only timed anew"
+    assert (state().comparison.timing != 0).sum() > (before.timing != 0).sum()
+    assert np.array_equal(state().comparison.path, before.path)
+    hands.choose("parameter-extent", "source within")
+    hands.see(lambda: state().linked is not None, 60)
+    assert (state().parameters.begin, state().parameters.end) == ("reference", "reference")
+    hands.click("parameter-masked")
+    hands.see(lambda: state().linked is not None and not hands.window.jobs.running, 60)
+    assert state().parameters.masked
+    hands.press("ZZ", CTRL)
+    assert not state().parameters.masked
+    assert not state().parameters.open
+    assert state().parameters.tolerance == 0.01
+    hands.click("button-compare-defaults")
+    assert state().parameters == ComparisonParameters()
+    hands.see(lambda: state().linked is not None and not hands.window.jobs.running, 60)
+
+
+def test_cancelling_leaves_a_word_and_a_way_back(hands, compare):
+    state = lambda: compare.bridge.state  # noqa: E731
+    compare.bridge.sitting.set_parameters(replace(state().parameters, rate=120.0))
+    hands.window.jobs.cancel()
+    hands.see(lambda: state().source.failure == "cancelled")
+    hands.press("K")
+    hands.click("button-compare-again")
+    hands.see(lambda: state().linked is not None, 60)
