@@ -52,15 +52,17 @@ def lay_out(asf: Asf, *, radians: bool, axes_in_radians: bool) -> Layout:
     tips = np.setdiff1d(np.arange(1, len(bones)), parents).astype(np.int64)
     names = tuple(bone.name for bone in bones)
     turned = np.array([bone.axis for bone in bones])
+    frames = np.array(
+        [
+            _turns(bone.order, "XYZ", axis if axes_in_radians else np.radians(axis))
+            for bone, axis in zip(bones, turned, strict=True)
+        ]
+    )
+    axes = tuple(_axes(bone, frame) for bone, frame in zip(bones, frames, strict=True))
     return Layout(
         bones,
-        Skeleton(names, parents, offsets, tips, vectors[tips]),
-        np.array(
-            [
-                _turns(bone.order, "XYZ", axis if axes_in_radians else np.radians(axis))
-                for bone, axis in zip(bones, turned, strict=True)
-            ]
-        ),
+        Skeleton(names, parents, offsets, tips, vectors[tips], axes),
+        frames,
         tuple(j for j, bone in enumerate(bones) if j == 0 or _moves(bone)),
         1.0 if radians else float(np.pi / 180),
     )
@@ -94,6 +96,12 @@ def motion(layout: Layout, values: dict[str, Array]) -> tuple[Array, Array]:
             moved = rot.rotate(layout.axes[j], moved)
         translations[:, t] = layout.skeleton.offsets[j] + moved
     return rotations, translations
+
+
+def _axes(bone: Bone, frame: Array) -> Array:
+    """The (d, 3) axes that a bone turns about, outermost first."""
+    turning = [letter for letter in reversed(bone.order) if f"r{letter.lower()}" in bone.dof]
+    return np.asarray(rot.to_matrix(frame).T[["XYZ".index(letter) for letter in turning]])
 
 
 def _moves(bone: Bone) -> bool:

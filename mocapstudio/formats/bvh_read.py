@@ -172,12 +172,8 @@ def _tell_of_offsets(reading: Reading, layout: Layout, options: ReadOptions) -> 
 
 def in_metres(skeleton: Skeleton, unit: float) -> Skeleton:
     """Scale a skeleton from units of its file to metres."""
-    return Skeleton(
-        skeleton.names,
-        skeleton.parents,
-        skeleton.offsets * unit,
-        skeleton.end_parents,
-        skeleton.end_offsets * unit,
+    return replace(
+        skeleton, offsets=skeleton.offsets * unit, end_offsets=skeleton.end_offsets * unit
     )
 
 

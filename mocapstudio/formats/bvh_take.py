@@ -85,8 +85,15 @@ def lay_out(
         offsets=offsets,
         end_parents=np.array([parent for parent, _ in hierarchy.ends], dtype=np.int64),
         end_offsets=np.array([offset for _, offset in hierarchy.ends]).reshape(-1, 3),
+        axes=tuple(_axes(joint.order) for joint in joints),
     )
     return Layout(hierarchy, skeleton, tuple(translated), additive, add_root, radians)
+
+
+def _axes(order: str) -> Array:
+    """The (d, 3) axes that rotation channels turn about, outermost first; three channels do all."""
+    letters = "XYZ" if len(order) > 2 else "".join(dict.fromkeys(order))
+    return np.eye(3)[["XYZ".index(letter) for letter in letters]]
 
 
 def _displacements(hierarchy: Hierarchy, numbers: Array, moving: list[int]) -> bool:

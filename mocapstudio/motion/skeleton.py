@@ -28,6 +28,10 @@ class Skeleton:
         (J, 3) metres, from the parent, in the parent's frame.
     end_parents, end_offsets
         (E,) and (E, 3): the tips (BVH end sites) and the joint that carries each.
+    axes
+        For each joint the (d, 3) unit axes that its file lets it turn about, outermost first, in
+        the parent's frame: its local rotation is the product of a turn about each. None where
+        the file does not tell.
 
     Raises
     ------
@@ -40,6 +44,7 @@ class Skeleton:
     offsets: NDArray[np.float64]
     end_parents: NDArray[np.int64]
     end_offsets: NDArray[np.float64]
+    axes: tuple[NDArray[np.float64], ...] | None = None
 
     def __post_init__(self) -> None:
         if len(set(self.names)) != len(self.names):

@@ -180,9 +180,12 @@ def test_hopeless_markers_are_refused(made: Made, truth: Take) -> None:
         solve(nameless, standing(truth.skeleton))
 
 
-@pytest.mark.parametrize(("name", "most"), [("02_01", 9.0), ("05_13", 15.0)])
+@pytest.mark.parametrize(("name", "most"), [("02_01", 8.0), ("05_13", 18.0)])
 def test_the_same_take_as_markers_and_as_joints(data: Path, name: str, most: float) -> None:
-    """Directions of bones against the laboratory's own solution, from its skeleton alone."""
+    """Rotations in the world against the laboratory's own solution, from its skeleton alone.
+
+    The laboratory's solution of 05_13 leaves the markers of hands and feet by decimetres.
+    """
     folder = data / "cmu_same_take_3_formats"
     (markers,), _ = formats.read_any(folder / f"{name}.c3d")
     (joints,), _ = formats.read(folder / f"{name}.amc", formats.ReadOptions(fps=Fraction(120)))
@@ -196,5 +199,8 @@ def test_the_same_take_as_markers_and_as_joints(data: Path, name: str, most: flo
         joints, rotations=joints.rotations[part], translations=joints.translations[part]
     )
     # The C3D faces another way than the AMC: its horizontal axes are exchanged.
-    apart = list(bones_apart(part_of, result.take, sideways=-90.0).values())
-    assert np.median(apart) < most
+    quarter = rot.about_axis(1, np.array(-np.pi / 2))
+    solved = rot.multiply(quarter, take_pose(result.take)[1])
+    apart = np.degrees(rot.angle(take_pose(part_of)[1], solved))
+    assert np.median(np.median(apart, axis=0)) < most
+    assert np.median(list(bones_apart(part_of, result.take, sideways=-90.0).values())) < 12

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.motion.solving.segments import Segment, segments
-from mocapstudio.motion.solving.sites import LEG, Site, site_of
+from mocapstudio.motion.solving.sites import LEG, SURE, Site, site_of
 from mocapstudio.motion.solving.template import Template
 
 Array = NDArray[np.float64]
@@ -31,14 +31,14 @@ class Attachment:
         (M,) the joint that carries each.
     offsets
         (M, 3) metres in that joint's frame: where it is expected.
-    spreads
-        (M,) metres: how far from there it may well be.
+    precisions
+        (M, 3, 3) inverse square metres in that joint's frame: how surely it is there.
     """
 
     markers: NDArray[np.int64]
     joints: NDArray[np.int64]
     offsets: Array
-    spreads: Array
+    precisions: Array
 
     def with_marker(self, marker: int, joint: int, offset: Array) -> Attachment:
         """Add a marker whose place was measured, not known."""
@@ -46,16 +46,12 @@ class Attachment:
             np.append(self.markers, marker),
             np.append(self.joints, joint),
             np.vstack([self.offsets, offset]),
-            np.append(self.spreads, _UNKNOWN),
+            np.concatenate([self.precisions, np.eye(3)[None] / _UNKNOWN**2]),
         )
-
-    def at(self, joints: NDArray[np.int64], offsets: Array, spreads: Array) -> Attachment:
-        """The same markers on other joints."""
-        return Attachment(self.markers, joints, offsets, spreads)
 
     def scaled(self, factor: float) -> Attachment:
         """The same markers on a body `factor` times as large."""
-        return self.at(self.joints, self.offsets * factor, self.spreads)
+        return replace(self, offsets=self.offsets * factor)
 
 
 def attach_by_name(take: MarkerTake, template: Template, seen: Sequence[int]) -> Attachment:
@@ -82,12 +78,13 @@ def attach_by_name(take: MarkerTake, template: Template, seen: Sequence[int]) ->
         place = _place(segment, known[1], known[0], size)
         joint = segment.joint_at(known[1].along)
         offset = world[joint].T @ (place - positions[joint])
-        rows.append((marker, joint, offset, known[1].spread * size))
+        precision = world[joint].T @ _precision(segment, known[1], size) @ world[joint]
+        rows.append((marker, joint, offset, precision))
     return Attachment(
         np.array([row[0] for row in rows], dtype=np.int64),
         np.array([row[1] for row in rows], dtype=np.int64),
         np.array([row[2] for row in rows]).reshape(-1, 3),
-        np.array([row[3] for row in rows]),
+        np.array([row[3] for row in rows]).reshape(-1, 3, 3),
     )
 
 
@@ -102,6 +99,14 @@ def _place(segment: Segment, site: Site, side: str, size: float) -> Array:
         outer = -outer
     aside = outer * segment.outer + site.front * segment.front + site.up * segment.up
     return np.asarray(segment.start + site.along * segment.bone + size * aside)
+
+
+def _precision(segment: Segment, site: Site, size: float) -> Array:
+    precision = np.eye(3) / (site.spread * size) ** 2
+    if site.sure:
+        along = segment.outer if site.sure == "outer" else segment.front
+        precision += np.outer(along, along) * ((SURE * size) ** -2 - (site.spread * size) ** -2)
+    return np.asarray(precision)
 
 
 def _leg(parts: dict[str, Segment]) -> float:

@@ -71,15 +71,38 @@ class Body:
         return result
 
     @cached_property
-    def freedoms(self) -> tuple[NDArray[np.int64], Array]:
-        """(D,) joints and (D, 3) axes in the parent's frame that markers can tell about."""
+    def freedoms(self) -> NDArray[np.int64]:
+        """(D,) the joint of each turn that markers can tell about."""
         above = topology(self.template.skeleton).above_hips
-        joints, axes = [], []
-        for joint, basis in enumerate(self.template.axes):
-            if joint not in above and self.carries[:, joint].any():
-                joints += [joint] * basis.shape[1]
-                axes += list(basis.T)
-        return np.array(joints, dtype=np.int64), np.array(axes).reshape(-1, 3)
+        return np.array(
+            [
+                joint
+                for joint, axes in enumerate(self.template.axes)
+                for _ in axes
+                if joint not in above and self.carries[:, joint].any()
+            ],
+            dtype=np.int64,
+        )
+
+    def axes(self, pose: Pose) -> Array:
+        """(K, D, 3) the axes of these turns in the parents' frames: of a saddle the outer moves."""
+        result = np.empty((len(pose.place), len(self.freedoms), 3))
+        for joint, span in self.spans.items():
+            own = self.template.axes[joint]
+            result[:, span] = own
+            if len(own) == 2:
+                outer = self.template.turned(joint, pose.turns[:, joint])[0]
+                result[:, span.stop - 1] = outer @ own[1]
+        return result
+
+    @cached_property
+    def spans(self) -> dict[int, slice]:
+        """Where among the turns each joint's own stand."""
+        joints, starts, counts = np.unique(self.freedoms, return_index=True, return_counts=True)
+        return {
+            int(joint): slice(int(start), int(start + count))
+            for joint, start, count in zip(joints, starts, counts, strict=True)
+        }
 
     @cached_property
     def standing(self) -> Array:
@@ -123,11 +146,11 @@ class Body:
         result[:, parents < 0] = np.eye(3)
         return np.asarray(result)
 
-    def by_turns(self, positions: Array, world: Array, markers: Array) -> Array:
-        """(K, 3 M, 3 + D) derivative of the markers by the hips' place and by turns."""
-        joints, axes = self.freedoms
+    def by_turns(self, axes: Array, positions: Array, world: Array, markers: Array) -> Array:
+        """(K, 3 M, 3 + D) derivative of the markers by the hips' place and by turns about axes."""
+        joints = self.freedoms
         frames, count = markers.shape[:2]
-        turning = np.einsum("kdab,db->kda", self.parents_world(world)[:, joints], axes)
+        turning = np.einsum("kdab,kdb->kda", self.parents_world(world)[:, joints], axes)
         # turning x (marker - joint), the part without the marker once for all markers.
         result = np.empty((frames, count, 3, 3 + len(joints)))
         result[..., :3] = np.eye(3)
@@ -141,10 +164,12 @@ class Body:
 
     def moved(self, pose: Pose, steps: Array) -> Pose:
         """Return the pose (K frames) after steps (K, 3 + D), metres and radians."""
-        joints, axes = self.freedoms
+        axes, angles = self.axes(pose), steps[:, 3:, None]
         turns = pose.turns.copy()
-        for joint in np.unique(joints):
-            own = joints == joint
-            vector = steps[:, 3:][:, own] @ axes[own]
-            turns[:, joint] = rot.to_matrix(rot.from_rotation_vector(vector)) @ turns[:, joint]
+        for joint, span in self.spans.items():
+            vectors = axes[:, span] * angles[:, span]
+            # Of a saddle first the inner axis turns, then the outer: so it stays one.
+            parts = vectors[:, ::-1] if vectors.shape[1] == 2 else vectors.sum(1, keepdims=True)
+            for part in np.swapaxes(parts, 0, 1):
+                turns[:, joint] = rot.to_matrix(rot.from_rotation_vector(part)) @ turns[:, joint]
         return Pose(pose.place + steps[:, :3], turns)

@@ -20,6 +20,8 @@ Array = NDArray[np.float64]
 
 _PULL = 0.04
 """Metres of lever with which the standing pose holds a joint."""
+_BENT = 0.35
+"""Sine of the angle from which a bent elbow or knee tells how the bone above is twisted."""
 _ENOUGH = 0.5
 """Weight of a marker that counts as seen."""
 
@@ -56,7 +58,7 @@ def first_pose(body: Body, seen: Seen) -> Pose:
             continue
         positions[:, joint] = positions[:, parent] + before @ body.offsets[joint]
         own = _telling(body, joint)
-        if len(own) and body.template.axes[joint].shape[1]:
+        if len(own) and len(body.template.axes[joint]):
             turned = _turned(
                 markers[own] - standing_positions[joint],
                 seen.places[:, own] - positions[:, joint, None],
@@ -67,6 +69,11 @@ def first_pose(body: Body, seen: Seen) -> Pose:
                 body, joint, np.swapaxes(before, 1, 2) @ turned @ standing_world[joint]
             )
         world[:, joint] = before @ turns[:, joint]
+        for hinge in set(body.template.skeleton.children[joint]) & body.template.bends.keys():
+            if len(body.template.axes[joint]) == 3:
+                twist = _twist(body, hinge, seen, positions[:, joint], world[:, joint])
+                world[:, joint] = twist @ world[:, joint]
+                turns[:, joint] = np.swapaxes(before, 1, 2) @ world[:, joint]
     return Pose(place, turns)
 
 
@@ -119,12 +126,38 @@ def _turned(template: Array, seen: Array, weights: Array, otherwise: Array) -> A
     return np.asarray(u @ vt)
 
 
+def _twist(body: Body, hinge: int, seen: Seen, start: Array, world: Array) -> Array:
+    """Turns (K, 3, 3) of a bone about itself after which the hinge at its end bends as it is seen.
+
+    Parameters
+    ----------
+    body, seen
+        As in `first_pose`.
+    hinge
+        Elbow or knee.
+    start, world
+        (K, 3) and (K, 3, 3): where the bone starts, and how it is turned.
+    """
+    bone = world @ body.offsets[hinge]
+    below = np.flatnonzero(body.carries[:, hinge])
+    weights = seen.weights[:, below, None]
+    there = (weights * seen.places[:, below]).sum(axis=1) / np.maximum(weights.sum(axis=1), 1e-9)
+    away = there - start - bone
+    axis = world @ body.template.axes[hinge][0]
+    along = bone / np.maximum(np.linalg.norm(bone, axis=1, keepdims=True), 1e-9)
+    wanted = body.template.bends[hinge] * np.cross(along, away)
+    sideways = (np.cross(axis, wanted) * along).sum(axis=1)
+    straight = (axis * wanted).sum(axis=1) - (axis * along).sum(axis=1) * (wanted * along).sum(1)
+    bent = np.linalg.norm(wanted, axis=1) > _BENT * np.linalg.norm(away, axis=1)
+    known = bent & (weights[..., 0].sum(axis=1) > _ENOUGH)
+    angle = np.where(known, np.arctan2(sideways, straight), 0.0)
+    return np.asarray(rot.to_matrix(rot.from_rotation_vector(angle[:, None] * along)))
+
+
 def _allowed(body: Body, joint: int, turn: Array) -> Array:
     """The part of local rotations (K, 3, 3) that a joint can follow."""
-    axes = body.template.axes[joint]
-    if axes.shape[1] == 3:
-        return turn
-    away = rot.from_matrix(turn @ body.standing[joint].T)
-    angle = 2.0 * np.arctan2(away[:, :3] @ axes[:, 0], away[:, 3])
-    about = rot.from_rotation_vector(angle[:, None] * axes[:, 0])
-    return np.asarray(rot.to_matrix(about) @ body.standing[joint])
+    base = rot.to_matrix(body.template.bases[joint])
+    parts = body.template.turned(joint, turn)
+    for part in reversed(parts):
+        base = part @ base
+    return base if parts else turn

@@ -18,6 +18,8 @@ MARKER = 0.01
 _TURNS = (0.4, 1.0, 3.0)
 """Radians that a joint without, with one, with more markers of its own may well be turned from the
 standing pose: decides what no marker tells, and keeps spine and neck from folding."""
+_STRAIGHT, _WRONG_WAY = 0.17, 0.05
+"""Radians that a knee or elbow bends beyond straight; how far it may well go past that."""
 _BESIDE = 0.15
 """Radians that a joint may well be turned from where it is just before and after."""
 _FAR = 0.04
@@ -64,20 +66,22 @@ def trusted(left: Array, weights: Array) -> Array:
     return np.asarray(weights * _FAR / np.maximum(far, _FAR))
 
 
-def pull(body: Body, pose: Pose, towards: Array) -> Array:
-    """(K, D) radians by which each freedom would have to turn to come to local rotations."""
-    joints, axes = body.freedoms
-    own, back = np.unique(joints, return_inverse=True)
+def pull(body: Body, pose: Pose, axes: Array, towards: Array) -> Array:
+    """(K, D) radians by which to turn about axes (K, D, 3) to come to local rotations."""
+    own, back = np.unique(body.freedoms, return_inverse=True)
     away = towards[..., own, :, :] @ np.swapaxes(pose.turns[:, own], -1, -2)
     vectors = rot.to_rotation_vector(rot.from_matrix(away))
-    return np.asarray(np.einsum("kda,da->kd", vectors[:, back], axes))
+    return np.asarray(np.einsum("kda,kda->kd", vectors[:, back], axes))
 
 
 def standing_precision(body: Body) -> Array:
     """(D,) inverse variances of turns from the standing pose; 0 for the hips."""
-    joints, _ = body.freedoms
+    joints = body.freedoms
     own = np.bincount(body.attachment.joints, minlength=len(body.scales))
-    deviation = np.array(_TURNS)[np.minimum(own, 2)][joints]
+    usual = np.array(_TURNS)[np.minimum(own, 2)]
+    for joint, stiff in body.template.stiffness.items():
+        usual[joint] = min(usual[joint], stiff)
+    deviation = usual[joints]
     return np.where(joints == body.template.hips, 0.0, deviation**-2.0)
 
 
@@ -95,12 +99,14 @@ def normal(body: Body, pose: Pose, seen: Seen) -> tuple[Array, Array, Array, Arr
     markers = body.markers(positions, world)
     left = seen.places - markers
     roots = np.sqrt(trusted(left, seen.weights)) / MARKER
-    slopes = body.by_turns(positions, world, markers)
+    axes = body.axes(pose)
+    slopes = body.by_turns(axes, positions, world, markers)
     slopes *= np.repeat(roots, 3, axis=1)[..., None]
     weighed = (left * roots[..., None]).reshape(len(left), -1)
     matrix = np.swapaxes(slopes, 1, 2) @ slopes
     right = (np.swapaxes(slopes, 1, 2) @ weighed[..., None])[..., 0]
-    _add_prior(matrix, right, standing_precision(body), pull(body, pose, body.standing))
+    _add_prior(matrix, right, standing_precision(body), pull(body, pose, axes, body.standing))
+    _hold_bends(matrix, right, body, pose)
     return matrix, right, slopes, weighed
 
 
@@ -110,6 +116,17 @@ def _add_prior(matrix: Array, right: Array, precision: Array, wanted: Array) -> 
     diagonal += 1e-3 * diagonal + 1e-9
     diagonal[:, 3:] += precision
     right[:, 3:] += precision * wanted
+
+
+def _hold_bends(matrix: Array, right: Array, body: Body, pose: Pose) -> None:
+    """Hold knees and elbows from bending the wrong way."""
+    for joint, sign in body.template.bends.items():
+        if joint not in body.spans:
+            continue
+        at = 3 + body.spans[joint].start
+        beyond = np.maximum(-_STRAIGHT - sign * body.template.angle(joint, pose.turns[:, joint]), 0)
+        matrix[:, at, at] += np.where(beyond > 0, _WRONG_WAY**-2.0, 0.0)
+        right[:, at] += sign * beyond * _WRONG_WAY**-2.0
 
 
 def refine(body: Body, pose: Pose, seen: Seen, rounds: int, *, beside: bool = False) -> Pose:
@@ -140,7 +157,7 @@ def _step(body: Body, pose: Pose, seen: Seen, around: Array | None) -> Pose:
     matrix, right, _, _ = normal(body, pose, seen)
     if around is not None:
         beside = np.full(matrix.shape[1] - 3, _BESIDE**-2.0)
-        _add_prior(matrix, right, beside, pull(body, pose, around))
+        _add_prior(matrix, right, beside, pull(body, pose, body.axes(pose), around))
     steps: Array = np.asarray(np.linalg.solve(matrix, right[..., None])[..., 0], dtype=float)
     return body.moved(pose, limited(steps))
 

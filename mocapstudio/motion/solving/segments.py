@@ -121,7 +121,7 @@ def _chain(skeleton: Skeleton, limb: Limb, parts: Topology) -> dict[str, int]:
         return {}
     bones = np.linalg.norm(skeleton.offsets[chain], axis=1)
     # Elbow (knee) is where the limb is longest on both sides: one bone above, the rest below.
-    below = [float(bones[at + 1 :].sum()) for at in range(len(chain))]
+    below = [_reach(skeleton, joint) for joint in chain]
     middle = max(range(1, len(chain)), key=lambda at: min(float(bones[at]), below[at]))
     end = _end_of(skeleton, chain, middle, names[3])
     places = {names[1]: middle - 1, names[2]: middle}
@@ -130,6 +130,17 @@ def _chain(skeleton: Skeleton, limb: Limb, parts: Topology) -> dict[str, int]:
     if middle > 1:
         places = {names[0]: middle - 2, **places}
     return {name: chain[at] for name, at in places.items()}
+
+
+def _reach(skeleton: Skeleton, joint: int) -> float:
+    """Metres of bones from a joint to the farthest tip below it."""
+    tips = np.flatnonzero(skeleton.end_parents == joint)
+    ends = [float(np.linalg.norm(skeleton.end_offsets[tip])) for tip in tips]
+    bones = [
+        float(np.linalg.norm(skeleton.offsets[child])) + _reach(skeleton, child)
+        for child in skeleton.children[joint]
+    ]
+    return max([0.0, *ends, *bones])
 
 
 def _end_of(skeleton: Skeleton, chain: list[int], middle: int, name: str) -> int:

@@ -8,6 +8,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,6 @@ from mocapstudio.motion.completion import complete
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.motion.progress import Progress
-from mocapstudio.motion.skeleton import Skeleton
 from mocapstudio.motion.solving.attachment import Attachment, attach_by_name, attach_by_rigidity
 from mocapstudio.motion.solving.body import Body, Pose
 from mocapstudio.motion.solving.calibration import calibrate
@@ -205,7 +205,7 @@ def _as_take(markers: MarkerTake, template: Take, body: Body, pose: Pose) -> Tak
     skeleton, hips = template.skeleton, body.template.hips
     ends = skeleton.end_offsets * body.scales[skeleton.end_parents, None]
     offsets = body.offsets.copy()
-    scaled = Skeleton(skeleton.names, skeleton.parents, offsets, skeleton.end_parents, ends)
+    scaled = replace(skeleton, offsets=offsets, end_offsets=ends)
     rotations = rot.continuous(rot.from_matrix(pose.turns))
     place = pose.place
     translated: tuple[int, ...] = (0,)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.kinematics import global_pose, take_pose
 from mocapstudio.motion.skeleton import Skeleton
+from mocapstudio.motion.solving.segments import segments
 from mocapstudio.motion.take import Take
 from mocapstudio.motion.topology import topology
 
@@ -21,6 +23,12 @@ _MOVING = 0.1
 _STANDING = 0.7
 """Share of a leg's length that its height has in a standing pose."""
 _LOOKED_AT = 200
+_TRUNK = {"spine", "head"}
+_BENDS = {"forearm": 1.0, "shank": -1.0}
+"""Whether what is below an elbow or a knee moves to the front or to the back when it bends."""
+_TOLD = 0.5
+_STIFF = {"spine": 0.4, "clavicle": 0.25, "hand": 0.4, "foot": 0.5}
+"""Radians, about a third of what joints of these segments can turn in all."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,14 +44,18 @@ class Template:
     standing
         (J, 4) local rotations of a standing pose, facing anywhere.
     axes
-        For each joint a (3, d) basis of the axes, in its parent's frame, that it can turn about:
-        d = 3 for a ball, 1 for a hinge, 0 for a joint that never turns.
+        For each joint the (d, 3) unit axes, in its parent's frame, that it can turn about from
+        its base, outermost first: d = 3 for a ball, 2 for a saddle, 1 for a hinge, 0 for a joint
+        that never turns.
+    bases
+        (J, 4) local rotations from which joints turn.
     """
 
     skeleton: Skeleton
     hips: int
     standing: Array
     axes: tuple[Array, ...]
+    bases: Array
 
     @property
     def standing_pose(self) -> tuple[Array, Array]:
@@ -53,13 +65,78 @@ class Template:
         )
         return positions[0], rot.to_matrix(world[0])
 
+    @cached_property
+    def stiffness(self) -> dict[int, float]:
+        """Radians that joints which turn little usually are turned from the standing pose."""
+        joints = topology(self.skeleton)
+        found = {
+            j: _STIFF["spine"] for limb in joints.limbs if limb.name in _TRUNK for j in limb.joints
+        }
+        for name, part in segments(self.skeleton, self.standing_pose[0]).items():
+            kind = name.removeprefix("left ").removeprefix("right ")
+            if kind in _STIFF and part.joint not in found:
+                found[part.joint] = _STIFF[kind]
+        return found
+
+    @cached_property
+    def bends(self) -> dict[int, float]:
+        """Knees and elbows that are hinges, with the sign of the angle by which they bend."""
+        positions, world = self.standing_pose
+        found = {}
+        for name, part in segments(self.skeleton, positions).items():
+            ahead = _BENDS.get(name.removeprefix("left ").removeprefix("right "))
+            parent = self.skeleton.parents[part.joint]
+            if ahead is None or len(self.axes[part.joint]) != 1 or parent < 0:
+                continue
+            swing = np.cross(world[parent] @ self.axes[part.joint][0], part.bone)
+            told = float(swing @ part.front) / max(float(np.linalg.norm(part.bone)), 1e-9)
+            if abs(told) > _TOLD:
+                found[part.joint] = float(np.sign(told)) * ahead
+        return found
+
+    def angle(self, joint: int, turns: Array) -> Array:
+        """Radians (K,) by which a hinge is turned in local rotations (K, 3, 3)."""
+        return _angle(self.axes[joint][-1], turns @ rot.to_matrix(self.bases[joint]).T)
+
+    def turned(self, joint: int, turns: Array) -> list[Array]:
+        """Take local rotations (K, 3, 3) of a hinge or saddle apart into those about its axes.
+
+        The nearest ones where a rotation is about other axes too; none for a ball.
+        """
+        axes = self.axes[joint]
+        if len(axes) == 3:
+            return []
+        left = turns @ rot.to_matrix(self.bases[joint]).T
+        parts = []
+        if len(axes) == 2:
+            # The inner axis is moved by the outer turn alone.
+            seen = left @ axes[1]
+            bearing = np.arctan2(seen @ np.cross(axes[0], axes[1]), seen @ axes[1])
+            parts.append(_about(axes[0], bearing))
+            left = np.swapaxes(parts[0], 1, 2) @ left
+        if len(axes):
+            parts.append(_about(axes[-1], _angle(axes[-1], left)))
+        return parts
+
+
+def _angle(axis: Array, turns: Array) -> Array:
+    """Radians (K,) in -pi..pi by which rotations (K, 3, 3) turn about an axis."""
+    away = rot.from_matrix(turns)
+    angle = 2.0 * np.arctan2(away[:, :3] @ axis, away[:, 3])
+    return np.asarray((angle + np.pi) % (2.0 * np.pi) - np.pi)
+
+
+def _about(axis: Array, angles: Array) -> Array:
+    """Rotations (K, 3, 3) about an axis."""
+    return np.asarray(rot.to_matrix(rot.from_rotation_vector(angles[:, None] * axis)))
+
 
 def template_of(take: Take) -> Template:
     """Return the template that a take's skeleton is.
 
     The rest pose is the standing pose where it stands; else that frame of the take is in which
-    its legs and trunk are straightest. Joints that never turn in a take that moves, or about one
-    axis only, are taken to be built so.
+    its legs and trunk are straightest. Joints turn about the axes that the file gives them; those
+    that never turn in a take that moves, or about one axis only, are taken to be built so.
     """
     skeleton = _with_own_lengths(take)
     hips = topology(skeleton).hips
@@ -67,8 +144,8 @@ def template_of(take: Take) -> Template:
     standing = np.tile(rot.IDENTITY, (len(skeleton), 1))
     if _height_share(skeleton, skeleton.rest_positions[None])[0] < _STANDING:
         standing = _straightest(take, skeleton, some)
-    axes, standing = _axes(take.rotations[some], standing, hips)
-    return Template(skeleton, hips, standing, axes)
+    axes, standing, bases = _axes(skeleton, take.rotations[some], standing, hips)
+    return Template(skeleton, hips, standing, axes, bases)
 
 
 def _with_own_lengths(take: Take) -> Skeleton:
@@ -78,9 +155,7 @@ def _with_own_lengths(take: Take) -> Skeleton:
     for at, joint in enumerate(take.translated):
         if joint not in above:
             offsets[joint] = np.median(take.translations[:, at], axis=0)
-    return Skeleton(
-        skeleton.names, skeleton.parents, offsets, skeleton.end_parents, skeleton.end_offsets
-    )
+    return replace(skeleton, offsets=offsets)
 
 
 def _height_share(skeleton: Skeleton, positions: Array) -> Array:
@@ -106,28 +181,33 @@ def _straightest(take: Take, skeleton: Skeleton, some: NDArray[np.int64]) -> Arr
     return np.asarray(take.rotations[best].copy())
 
 
-def _axes(turns: Array, standing: Array, hips: int) -> tuple[tuple[Array, ...], Array]:
-    """Axes of every joint, and the standing pose with what never turns as the take has it."""
+def _axes(
+    skeleton: Skeleton, turns: Array, standing: Array, hips: int
+) -> tuple[tuple[Array, ...], Array, Array]:
+    """Axes and bases of every joint; what never turns stands as the take has it."""
     frames, joints = turns.shape[:2]
     first = turns[:1]
     away = rot.to_rotation_vector(rot.multiply(turns, rot.conjugate(first)))
     moving = np.linalg.norm(away, axis=2).max(axis=0)
     known = frames > 1 and float(np.median(moving)) > _MOVING
     axes, standing = [], standing.copy()
+    bases = np.tile(rot.IDENTITY, (joints, 1))
     for joint in range(joints):
-        if joint == hips or not known:
-            axes.append(np.eye(3))
-        elif moving[joint] < _STILL:
-            axes.append(np.zeros((3, 0)))
-            standing[joint] = first[0, joint]
-        else:
-            axes.append(_hinge(turns[:, joint], standing[joint]))
-    return tuple(axes), standing
+        own = np.eye(3) if skeleton.axes is None else skeleton.axes[joint]
+        if joint == hips:
+            own = np.eye(3)
+        elif known and moving[joint] < _STILL:
+            own = np.zeros((0, 3))
+            bases[joint] = standing[joint] = first[0, joint]
+        elif known and len(own) == 3 and (hinge := _hinge(turns[:, joint], standing[joint])).size:
+            own, bases[joint] = hinge, standing[joint]
+        axes.append(own)
+    return tuple(axes), standing, bases
 
 
 def _hinge(turns: Array, standing: Array) -> Array:
-    """The axis (3, 1) that all turns from the standing pose are about, or all three axes."""
+    """The axis (1, 3) that all turns from the standing pose are about, or none (0, 3)."""
     away = rot.to_rotation_vector(rot.multiply(turns, rot.conjugate(standing)))
     _, sizes, axes = np.linalg.svd(away, full_matrices=False)
     hinge = sizes[0] > 0 and sizes[1] <= _STILL * sizes[0] * 10
-    return np.asarray(axes[:1].T if hinge else np.eye(3))
+    return np.asarray(axes[:1] if hinge else axes[:0])
