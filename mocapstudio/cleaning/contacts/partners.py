@@ -25,12 +25,16 @@ from mocapstudio.motion.take import Take
 
 Array = NDArray[np.float64]
 
-_TOGETHER, _APART, _SPREAD = np.log(0.25), np.log(1.6), 0.8
+_TOGETHER, _APART, _SPREAD = np.log(0.3), np.log(1.6), 0.8
 """Means and standard deviation of the log speed between hands, legs a second."""
 _GRIP = 0.09
-"""Legs: palms that hold each other are about this far apart."""
-_FAR = 0.3
+"""Legs: palms that hold each other are about this far apart; where skeletons fit badly, farther."""
+_MISFIT = 1.5
+"""How fast it grows less likely that hands hold each other the farther apart they are."""
+_FAR = 0.45
 """Legs: beyond this nothing is held."""
+_BESIDE, _IDLE = 0.18, 0.25
+"""Legs: hands farther apart than the one that move by less than the other hang beside each other."""
 _REACH = 2.0
 """Legs: free hands are anywhere up to this far apart."""
 _SHORTEST = 0.25
@@ -121,9 +125,16 @@ class _Grip:
         apart = np.linalg.norm(palm - self.place, axis=1) / leg
         x = log_speed(speed)
         slow = 0.5 * (((x - _APART) / _SPREAD) ** 2 - ((x - _TOGETHER) / _SPREAD) ** 2)
-        near = np.log(_REACH / _GRIP) - np.maximum(apart / _GRIP - 1, 0) ** 2
+        beyond = np.maximum(apart / _GRIP - 1, 0)
+        near = np.log(_REACH / _GRIP) - _MISFIT * np.log1p(beyond**2 / 4)
         result: Array = np.where(apart > _FAR, -12.0, np.clip(slow + near, -12.0, 12.0))
         return result
+
+    def beside(self, palm: Array, start: int, end: int, leg: float) -> bool:
+        """Tell whether the palm (F, 3) only hangs near it: apart, and neither goes anywhere."""
+        apart = np.linalg.norm((palm - self.place)[start:end], axis=1)
+        way = max(float(np.linalg.norm(np.ptp(p[start:end], axis=0))) for p in (palm, self.place))
+        return bool(np.median(apart) > _BESIDE * leg and way < _IDLE * leg)
 
     def local(self, palm: Array) -> Array:
         """(F, 3) metres: the palm in the joint's frame."""
@@ -159,7 +170,7 @@ def _spans(
     found = []
     for g, grip in enumerate(grips):
         for start, end in runs((probability[g] > 0.5) & (best == g) & inside):
-            if end - start < fewest:
+            if end - start < fewest or grip.beside(place, start, end, leg_length(take.skeleton)):
                 continue
             x, y, z = np.median(grip.local(place)[start:end], axis=0)
             target = Following(name, grip.joint, (float(x), float(y), float(z)))

@@ -74,13 +74,3 @@ def test_distributions_are_learnt_from_the_take() -> None:
     odds = model.log_odds(log_speed(speed[:, None]), height[:, None])
     found = posterior(odds, 30.0)[:, 0] > 0.5
     assert (found == contact).mean() > 0.98
-
-
-def test_who_only_stands_may_shift_on_the_spot() -> None:
-    """Where nothing is free, a slow turn of the foot on the floor is no other state."""
-    speed, height = np.full(400, 0.004), np.zeros(400)
-    for start in (20, 150, 300):
-        speed[start : start + 25] = 0.1
-    model = learnt(usual("ball"), speed[:, None], height[:, None], 100.0)
-    odds = model.log_odds(log_speed(speed[:, None]), height[:, None])
-    assert posterior(odds, 100.0).min() > 0.5
