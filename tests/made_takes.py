@@ -228,3 +228,16 @@ def paced(take: Take, pace: np.ndarray) -> Take:
     before, after = take.translations[low], take.translations[low + 1]
     place = before * (1 - part[..., None]) + after * part[..., None]
     return take.with_motion(rot.continuous(rotations), place)
+
+
+def reaching(still: int, reach: int, after: int, rate: int = 30) -> Take:
+    """Stand, raise both arms and lower them again, stand; frames of each."""
+    skeleton = person()
+    course = np.concatenate([np.zeros(still), np.hanning(reach), np.zeros(after)])
+    rotations = np.tile(rot.IDENTITY, (len(course), len(skeleton), 1))
+    for name, sign in (("LeftArm", 1.0), ("RightArm", -1.0)):
+        rotations[:, skeleton.index[name]] = rot.about_axis(2, sign * 1.4 * course)
+    for name in ("LeftForeArm", "RightForeArm"):
+        rotations[:, skeleton.index[name]] = rot.about_axis(0, -0.8 * course**2)
+    places = np.tile([0.0, 0.95, 0.0], (len(course), 1, 1))
+    return Take("reach", skeleton, rotations, places, Fraction(rate))

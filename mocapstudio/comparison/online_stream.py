@@ -63,7 +63,9 @@ def read_frame(
 ) -> StreamFrame | FileError:
     """Read a line of a stream, the `number`-th of it; returns what is wrong with a bad one."""
     try:
-        return _frame(number, json.loads(text))
+        # Left to itself, json would guess at other encodings.
+        words = text.decode("utf-8") if isinstance(text, bytes) else text
+        return _frame(number, json.loads(words))
     except json.JSONDecodeError as cause:
         return FileError(path, f"is not JSON: {cause.msg}", line=number)
     except UnicodeDecodeError:

@@ -224,7 +224,7 @@ class Lines:
 
     def __init__(self, descriptor: int, most: int = 256) -> None:
         self._descriptor = descriptor
-        self._waiting: queue.Queue[bytes] = queue.Queue(most)
+        self._waiting: queue.Queue[tuple[float, bytes]] = queue.Queue(most)
         self._stop, self._read_all = threading.Event(), threading.Event()
         # What blocks in a read must not keep the process from ending.
         self._thread = threading.Thread(target=self._run, name="lines", daemon=True)
@@ -240,8 +240,11 @@ class Lines:
         """Whether the thread still reads."""
         return self._thread.is_alive()
 
-    def take(self) -> bytes | None:
-        """Return the next line without its end, or None where there is none now."""
+    def take(self) -> tuple[float, bytes] | None:
+        """Return when the next line came, and the line without its end; None without one.
+
+        The time is that of `time.perf_counter`, seconds.
+        """
         try:
             return self._waiting.get_nowait()
         except queue.Empty:
@@ -254,9 +257,10 @@ class Lines:
     def _run(self) -> None:
         try:
             for line in self._lines():
+                came = time.perf_counter()
                 while not self._stop.is_set():
                     with contextlib.suppress(queue.Full):
-                        self._waiting.put(line, timeout=_LOOK_UP)
+                        self._waiting.put((came, line), timeout=_LOOK_UP)
                         break
         except OSError:
             # Whoever owned the pipe has closed it under us: that is its end.

@@ -5,21 +5,16 @@ A feed is asked what has arrived by now, again and again; it never waits.
 
 from __future__ import annotations
 
+import time
 from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 
 from mocapstudio.comparison.online_features import F32, Features, JointRotations, Recording
-from mocapstudio.comparison.online_stream import (
-    STANDARD_INPUT,
-    StreamFrame,
-    StreamPoses,
-    read_frame,
-)
+from mocapstudio.comparison.online_stream import StreamFrame, StreamPoses, read_frame
 from mocapstudio.motion.errors import FileError, SkeletonMismatchError
 
 RATE_FRAMES = 8
@@ -27,6 +22,7 @@ RATE_FRAMES = 8
 
 _NEW_CLOCK_SECONDS = 1.0
 _RATES = 1.0, 2000.0
+_POURED = 0.5
 
 Rotation = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -113,35 +109,38 @@ class TakeFeed:
 class StreamFeed:
     """Reads JSON lines; see `comparison.online_stream`.
 
-    A line is shown when it comes. Where lines wait already, as those of a file that is poured in,
-    they are held back until their own times, so that they are played and not rushed through.
+    A line is shown when it comes; what waited while there was no alignment is made up for. Lines
+    of a file that is poured in, which come faster than their own times tell, are held back until
+    those times, so that they are played and not rushed through.
 
     Parameters
     ----------
     next_line
-        Returns the next line without waiting, or None where there is none now.
+        Returns when the next line came, by `clock`, and the line; None where there is none now.
+        It never waits.
     over
         Tells whether there will be no more.
     names
         Joints of the stream, and what they are called in the reference.
-    path
-        What errors name.
+    clock
+        Seconds.
     """
 
     slips = False
 
     def __init__(
         self,
-        next_line: Callable[[], bytes | None],
+        next_line: Callable[[], tuple[float, bytes] | None],
         over: Callable[[], bool],
         names: Mapping[str, str] | None = None,
-        path: Path = STANDARD_INPUT,
+        clock: Callable[[], float] = time.perf_counter,
     ) -> None:
-        self._next_line, self._over, self._path = next_line, over, path
+        self._next_line, self._over, self._clock = next_line, over, clock
         self._names = names
         self._poses: StreamPoses | None = None
         self._ahead: deque[StreamFrame | FileError] = deque()
         self._line = 0
+        self._came: list[tuple[float, float]] = []
         self._last: float | None = None
         self._origin: float | None = None
 
@@ -202,17 +201,25 @@ class StreamFeed:
         self._ahead.popleft()
         return frame
 
-    def _is_due(self, time: float, seconds: float, *, fresh: bool) -> bool:
-        back = self._last is not None and time < self._last - _NEW_CLOCK_SECONDS
-        if self._origin is None or back:
-            self._origin = seconds - time
+    def _is_due(self, own: float, seconds: float, *, fresh: bool) -> bool:
+        back = self._last is not None and own < self._last - _NEW_CLOCK_SECONDS
+        if self._origin is None:
+            self._origin = seconds - own - self._lag()
+        elif back:
+            self._origin = seconds - own
         elif fresh and not self._more_wait():
             # It has come just now: nothing is won by holding it back.
-            self._origin = min(self._origin, seconds - time)
-        if time + self._origin > seconds + 1e-9:
+            self._origin = min(self._origin, seconds - own)
+        if own + self._origin > seconds + 1e-9:
             return False
-        self._last = time
+        self._last = own
         return True
+
+    def _lag(self) -> float:
+        """Seconds since the first frame came, or 0 where the first were poured in."""
+        (first, begin), (last, end) = self._came[0], self._came[-1]
+        poured = last - first < _POURED * (end - begin)
+        return 0.0 if poured else self._clock() - first
 
     def _more_wait(self) -> bool:
         """Whether another line lies behind the present one."""
@@ -223,8 +230,16 @@ class StreamFeed:
         return len(self._ahead) > 1
 
     def _read(self) -> StreamFrame | FileError | None:
-        while (line := self._next_line()) is not None:
+        while (found := self._next_line()) is not None:
+            came, line = found
             self._line += 1
             if line.strip():
-                return read_frame(self._line, line, self._path)
+                frame = read_frame(self._line, line)
+                if isinstance(frame, StreamFrame) and frame.time is not None:
+                    self._note(came, frame.time)
+                return frame
         return None
+
+    def _note(self, came: float, own: float) -> None:
+        if len(self._came) < RATE_FRAMES:
+            self._came.append((came, own))

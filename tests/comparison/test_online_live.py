@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 import pytest
-from made_takes import person, walking
+from made_takes import reaching, walking
 
 from mocapstudio import formats
 from mocapstudio.comparison.labels import read_labels
@@ -20,19 +19,6 @@ from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.take import Take
 
 LABELS = Path(__file__).parents[1] / "labels"
-
-
-def reaching(still: int, reach: int, after: int, rate: int = 30) -> Take:
-    """Stand, raise both arms and lower them again, stand; frames of each."""
-    skeleton = person()
-    course = np.concatenate([np.zeros(still), np.hanning(reach), np.zeros(after)])
-    rotations = np.tile(rot.IDENTITY, (len(course), len(skeleton), 1))
-    for name, sign in (("LeftArm", 1.0), ("RightArm", -1.0)):
-        rotations[:, skeleton.index[name]] = rot.about_axis(2, sign * 1.4 * course)
-    for name in ("LeftForeArm", "RightForeArm"):
-        rotations[:, skeleton.index[name]] = rot.about_axis(0, -0.8 * course**2)
-    places = np.tile([0.0, 0.95, 0.0], (len(course), 1, 1))
-    return Take("reach", skeleton, rotations, places, Fraction(rate))
 
 
 def joined(*takes: Take) -> Take:

@@ -344,10 +344,10 @@ class LiveMode(QObject):
     def _wait_for_rate(self) -> None:
         """Wait until a stream tells how fast it comes."""
         assert self._stream is not None
-        rate = self._stream_rate or self._stream.rate()
-        if rate is not None:
+        told = self._stream.rate()
+        if told is not None:
             self._timer.stop()
-            self._prepare(None, rate or None)
+            self._prepare(None, self._stream_rate or told or None)
 
     def _forget(self, **changes: object) -> None:
         self._notes.clear()

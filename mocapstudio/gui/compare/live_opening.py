@@ -110,7 +110,7 @@ def _begin(
         return
     lines = Lines(_standard_input())
     rate = None if request.options is None or request.options.fps is None else request.options.fps
-    feed = StreamFeed(lines.take, lambda: lines.ended, request.names, STANDARD_INPUT)
+    feed = StreamFeed(lines.take, lambda: lines.ended, request.names)
     mode.listen(feed, str(STANDARD_INPUT), None if rate is None else float(rate), lines.close)
 
 
