@@ -12,7 +12,7 @@ from mocapstudio.formats.c3d_layout import Layout, rate
 from mocapstudio.formats.c3d_numbers import Numbers
 from mocapstudio.formats.c3d_parameters import BLOCK, Parameter, Parameters
 from mocapstudio.formats.c3d_points import read_points
-from mocapstudio.formats.c3d_read import C3dRecord, inside
+from mocapstudio.formats.c3d_read import C3dRecord
 from mocapstudio.formats.marker_changes import check_declared, marker_changes
 from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.declared import Declared
@@ -76,8 +76,7 @@ def as_read(source: Source) -> Array:
     """(F, M, 3) metres: the markers as they were when they were read."""
     record: C3dRecord = source.record
     points = read_points(record.data, record.layout)
-    points.xyz[points.missing] = np.nan
-    return inside(points.xyz[:, record.points], record.units, source.to_inside)
+    return points.positions(record.points, record.units, source.to_inside)
 
 
 def _put(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,8 +10,14 @@ from numpy.typing import NDArray
 
 from mocapstudio.formats.bvh_rows import LARGEST
 from mocapstudio.formats.c3d_layout import Layout
+from mocapstudio.motion import rotations as rot
 
 Mask = NDArray[np.bool_]
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+_AT_ONCE = 1 << 12
+"""Points read at a time, so that the numbers of a file are never held a second time as a whole."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,8 +26,8 @@ class Points:
 
     Attributes
     ----------
-    xyz
-        (F, P, 3); whatever stands there where a sample is missing.
+    data, layout
+        The file and where the samples stand in it: coordinates are read when they are asked for.
     invalid
         (F, P) True where the residual says that there is no sample.
     no_number
@@ -31,7 +38,8 @@ class Points:
         (F, P) True where a camera or a residual tells that the sample was measured.
     """
 
-    xyz: NDArray[np.float32]
+    data: bytes
+    layout: Layout
     invalid: Mask
     no_number: Mask
     zero: Mask
@@ -42,30 +50,71 @@ class Points:
         """(F, P) True where there is no sample."""
         return self.invalid | self.no_number | self.zero
 
+    def coordinates(self, frames: slice | Indices, points: Indices) -> NDArray[np.float32]:
+        """(K, N, 3) of some frames and points, NaN where missing."""
+        xyz, _ = _samples(self.data, self.layout, frames, points)
+        missing = (mask[frames][:, points] for mask in (self.invalid, self.no_number, self.zero))
+        for mask in missing:
+            xyz[mask] = np.nan
+        return xyz
+
+    def positions(self, points: Indices, units: Array, to_inside: Array) -> Array:
+        """Metres, Y up, of some points; NaN where missing.
+
+        Parameters
+        ----------
+        points
+            (N,) indices.
+        units
+            (N,) metres per unit.
+        to_inside
+            Quaternion from the file's axes to ours.
+
+        Returns
+        -------
+        (F, N, 3).
+        """
+        axes = rot.to_matrix(to_inside).T
+        result = np.empty((self.layout.frames, len(points), 3))
+        for frames in _spans(self.layout):
+            np.matmul(self.coordinates(frames, points) * units[:, None], axes, out=result[frames])
+        return result
+
 
 def read_points(data: bytes, layout: Layout) -> Points:
-    """Read all points of all frames; the samples lie within the data."""
-    table = _table(data, layout)
-    xyz = table[..., :3]
-    with np.errstate(invalid="ignore"):
-        no_number = ~(np.abs(xyz) <= LARGEST).all(axis=2)
-        fourth = table[..., 3]
-        words = np.where(np.abs(fourth) < 0x8000, fourth, np.where(fourth < 0, -1, 0))
-        words = words.astype(np.int16)
-    if not layout.real:
-        xyz = xyz * np.float32(layout.scale)
-    invalid = words < 0
-    zero = (xyz == 0).all(axis=2) & ~invalid
-    return Points(xyz, invalid, no_number & ~invalid, zero, words > 0)
+    """Tell samples from gaps in all frames; the samples lie within the data."""
+    shape = (layout.frames, layout.points)
+    invalid, no_number, zero, measured = (np.empty(shape, dtype=bool) for _ in range(4))
+    every = np.arange(layout.points)
+    for frames in _spans(layout):
+        xyz, fourth = _samples(data, layout, frames, every)
+        with np.errstate(invalid="ignore"):
+            words = np.where(np.abs(fourth) < 0x8000, fourth, np.where(fourth < 0, -1, 0))
+            words = words.astype(np.int16)
+            invalid[frames] = words < 0
+            no_number[frames] = ~(np.abs(xyz) <= LARGEST).all(axis=2) & ~invalid[frames]
+        zero[frames] = (xyz == 0).all(axis=2) & ~invalid[frames]
+        measured[frames] = words > 0
+    return Points(data, layout, invalid, no_number, zero, measured)
 
 
-def _table(data: bytes, layout: Layout) -> NDArray[np.float32]:
-    """(F, P, 4) numbers as they stand; integers not yet scaled."""
+def _spans(layout: Layout) -> Iterator[slice]:
+    step = max(1, _AT_ONCE // max(1, layout.points))
+    return (slice(at, at + step) for at in range(0, layout.frames, step))
+
+
+def _samples(
+    data: bytes, layout: Layout, frames: slice | Indices, points: Indices
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Coordinates (K, N, 3), and what stands beside them: (K, N) residual and cameras."""
     whole = memoryview(data)[layout.start : layout.start + layout.frames * layout.stride]
-    # Without analogue samples between the frames nothing has to be cut out.
-    if layout.analog:
-        rows = np.frombuffer(whole, dtype=np.uint8).reshape(layout.frames, layout.stride)
-        whole = memoryview(rows[:, : 4 * layout.points * layout.width].tobytes())
+    rows = np.frombuffer(whole, dtype=np.uint8).reshape(layout.frames, layout.stride)
+    # Analogue samples between the frames are cut out.
+    own = rows[frames, : 4 * layout.points * layout.width]
+    each = own.reshape(len(own), layout.points, 4 * layout.width)[:, points]
     numbers = layout.numbers
-    flat = numbers.floats(whole) if layout.real else numbers.words(whole).astype(np.float32)
-    return flat.reshape(layout.frames, layout.points, 4)
+    if layout.real:
+        table = numbers.floats(each.tobytes()).reshape(len(own), len(points), 4)
+        return table[..., :3], table[..., 3]
+    table = numbers.words(each.tobytes()).astype(np.float32).reshape(len(own), len(points), 4)
+    return table[..., :3] * np.float32(layout.scale), table[..., 3]

@@ -20,7 +20,6 @@ from mocapstudio.formats.c3d_space import Space, find_space
 from mocapstudio.formats.c3d_subjects import subjects
 from mocapstudio.formats.options import ReadOptions
 from mocapstudio.formats.report import ImportReport, Problem
-from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.errors import FileError
 from mocapstudio.motion.markers import Event, MarkerTake
 from mocapstudio.motion.take import Source
@@ -77,8 +76,7 @@ def read_c3d(
     if not markers:
         raise FileError(path, f"none of its {layout.points} points is a marker")
     _tell_missing(points, list(markers), problems)
-    points.xyz[points.missing] = np.nan
-    space = find_space(points.xyz, markers, parameters, options, problems)
+    space = find_space(points, markers, parameters, options, problems)
     takes = _takes(path, data, layout, parameters, points, markers, space, options, problems)
     problems.sort(key=lambda problem: problem.guess)
     return takes, ImportReport(path, "c3d", tuple(dict.fromkeys(problems)))
@@ -143,28 +141,21 @@ def _takes(
         own = np.array(chosen, dtype=np.int64)
         named = tuple(markers[i] for i in chosen)
         record = C3dRecord(data, layout, named, own, space.units[own], parameters)
+        filled = _filled(points, own)
         source = Source(path, "c3d", digest, space.unit, space.to_inside, performer, record)
         takes.append(
             MarkerTake(
                 name=f"{path.stem} {name}".rstrip(),
                 labels=named,
-                positions=inside(points.xyz[:, own], record.units, source.to_inside),
+                positions=points.positions(own, record.units, source.to_inside),
                 rate=frequency,
                 first_frame=layout.first_frame,
-                filled=_filled(points, own),
+                filled=filled,
                 events=_at_rate(events, stated, frequency),
                 source=source,
             )
         )
     return takes
-
-
-def inside(xyz: NDArray[np.float32], units: Array, to_inside: Array) -> Array:
-    """Bring points (F, M, 3) in the file's units and axes to metres, Y up."""
-    positions = xyz.astype(np.float64) * units[:, None]
-    if np.array_equal(to_inside, rot.IDENTITY):
-        return positions
-    return positions @ rot.to_matrix(to_inside).T
 
 
 def _filled(points: Points, own: NDArray[np.int64]) -> NDArray[np.bool_] | None:

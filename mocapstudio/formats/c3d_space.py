@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapstudio.formats.c3d_parameters import Parameters
+from mocapstudio.formats.c3d_points import Points
 from mocapstudio.formats.guesses import turn_to_inside
 from mocapstudio.formats.marker_guesses import guess_marker_unit, guess_marker_up
 from mocapstudio.formats.options import UNITS, ReadOptions, Up
@@ -60,7 +61,7 @@ class Space:
 
 
 def find_space(
-    xyz: NDArray[np.float32],
+    points: Points,
     markers: dict[int, str],
     parameters: Parameters,
     options: ReadOptions,
@@ -70,15 +71,16 @@ def find_space(
 
     Parameters
     ----------
-    xyz
-        (F, P, 3) in the file's units and axes, NaN where missing.
+    points
+        All points of the file.
     markers
         Labels of the points that are markers, by index.
     """
     chosen = np.array(list(markers), dtype=int)
-    some = np.unique(np.linspace(0, len(xyz) - 1, _SOME).astype(int))
-    seen = xyz[np.ix_(some, chosen)].astype(np.float64)
-    units, unit = _units(seen, chosen, xyz.shape[1], parameters, options, problems)
+    layout = points.layout
+    some = np.unique(np.linspace(0, layout.frames - 1, _SOME).astype(int))
+    seen = points.coordinates(some, chosen).astype(np.float64)
+    units, unit = _units(seen, chosen, layout.points, parameters, options, problems)
     up = _to_inside(
         seen * units[chosen, None], tuple(markers.values()), parameters, options, problems
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from fractions import Fraction
 from pathlib import Path
 
@@ -429,3 +430,18 @@ def test_c3d_is_told_by_its_content(tmp_path: Path) -> None:
     path = tmp_path / "take.dat"
     path.write_bytes(Made(millimetres(), more=Y_UP).data())
     assert read_any(path)[1].format == "c3d"
+
+
+@pytest.mark.parametrize("scale", [-1.0, 0.1], ids=["real", "integer"])
+def test_memory_stays_within_five_times_the_file(scale: float) -> None:
+    xyz = np.random.default_rng(8).uniform(-900, 900, (4000, 20, 3))
+    fourth = np.full((4000, 20), 3 << 8 | 4)
+    data = Made(xyz, fourth, scale=scale).data()
+    tracemalloc.start()
+    try:
+        takes, _ = read_c3d(Path("large.c3d"), data, ReadOptions())
+        peak = len(data) + tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert takes[0].positions.shape == (4000, 20, 3)
+    assert peak < 5 * len(data)

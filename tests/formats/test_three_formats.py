@@ -10,7 +10,6 @@ from test_asf_amc import BONE_ENDS, NAMESAKES
 
 from mocapstudio.formats import ReadOptions, read, read_any
 from mocapstudio.formats.c3d_points import read_points
-from mocapstudio.formats.c3d_read import inside
 from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.kinematics import take_pose
 from mocapstudio.motion.markers import MarkerTake
@@ -59,8 +58,9 @@ def test_amc_and_c3d_have_the_same_bone_ends(data: Path) -> None:
     record = c3d.source.record
     labels = [label.rpartition(":")[2] for label in record.parameters.texts("POINT", "LABELS")]
     which = [labels.index(label) for label in BONE_ENDS]
-    xyz = read_points(record.data, record.layout).xyz[:, which]
-    of_c3d = to_bvh_axes(inside(xyz, np.full(len(which), c3d.source.unit), c3d.source.to_inside))
+    points = read_points(record.data, record.layout)
+    units = np.full(len(which), c3d.source.unit)
+    of_c3d = to_bvh_axes(points.positions(np.array(which), units, c3d.source.to_inside))
     of_amc = take_pose(amc)[0][:, [amc.skeleton.index[n] for n in BONE_ENDS.values()]]
     assert np.linalg.norm(of_amc - of_c3d, axis=-1).max() < METRES
 
