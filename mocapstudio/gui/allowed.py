@@ -16,14 +16,14 @@ GENERAL = frozenset(
 
 def allowed(state: DocumentState) -> dict[str, bool]:
     """Tell of each command about the document whether it can be done; others always can."""
-    take = state.take is not None
+    take, some = state.take is not None, bool(state.everyone)
     item = state.selected
     span = state.selection.span is not None
     decided = item is not None and item.verdict is not Verdict.OPEN
     accepted = item is not None and item.verdict is Verdict.ACCEPTED
     found = {
         "partner": take, "export": take, "report": take, "import-report": take, "close-take": take,
-        "save": take, "save-as": take,
+        "save": some, "save-as": some,
         "analyse": take, "play": take, "frame-back": take, "frame-on": take,
         "ten-back": take, "ten-on": take, "first": take, "last": take, "loop": take,
         "trim-in": take, "trim-out": take,
@@ -36,7 +36,7 @@ def allowed(state: DocumentState) -> dict[str, bool]:
         "protect": take and span,
         "unprotect": any(one.performer == state.active for one in state.sitting.protected),
         "frame-joint": take, "zoom-flag": item is not None or span, "whole-take": take,
-        "new": take,
+        "new": some,
         "undo": state.can_undo is not None, "redo": state.can_redo is not None,
     }  # fmt: skip
     for k in range(6):

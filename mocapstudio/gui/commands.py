@@ -6,6 +6,7 @@ from mocapstudio.gui.command import SEPARATOR, Command
 from mocapstudio.gui.compare.commands import COMPARE, SEGMENTS
 from mocapstudio.gui.compare.live_commands import LIVE
 from mocapstudio.gui.contacts.commands import CONTACTS
+from mocapstudio.gui.markers.commands import MARKERS
 from mocapstudio.gui.workspaces.registry import WORKSPACES
 
 __all__ = ["COMMANDS", "HOMES", "MENUS", "SEPARATOR", "Command"]
@@ -170,6 +171,7 @@ MENUS = {
     "&Compare": COMPARE,
     "&Segments": SEGMENTS,
     "&Live": LIVE,
+    "&Markers": MARKERS,
     "&Play": PLAY,
     "&View": VIEW,
     "&Workspace": WORKSPACE,
@@ -178,6 +180,7 @@ MENUS = {
 
 HOMES = {"Fla&g": ("review",), "&Neighbour": ("review",), "&Analysis": ("review",),
          "Co&ntacts": ("contacts",),
+         "&Markers": ("markers",),
          "&Compare": ("compare",), "&Segments": ("compare",), "&Live": ("compare",)}  # fmt: skip
 """Menus that belong to some workspaces only, by title."""
 

@@ -233,3 +233,5 @@ class FilesDesk(QObject):
         if force:
             self._journalling.swap_by_force(document)
         self.opening.greet(document)
+        if document.state.markers and not document.state.scene.performers:
+            self.markers.show()

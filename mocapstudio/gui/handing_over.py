@@ -55,10 +55,11 @@ class HandingOver(QObject):
         state = self._bridge.state
         if state.path is not None:
             return state.path
-        take = state.take
-        if take is None or take.source is None:
+        takes = [one.take for one in state.markers] if state.take is None else [state.take]
+        source = takes[0].source if takes else None
+        if source is None:
             return Path(settings.folder("session")) / f"session{SUFFIX}"
-        return take.source.path.with_suffix(SUFFIX)
+        return source.path.with_suffix(SUFFIX)
 
     def report_path(self) -> Path:
         """Return the name offered for the report."""

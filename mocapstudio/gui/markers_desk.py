@@ -1,4 +1,4 @@
-"""Markers that were opened: asks what to do with them, solves them, or hands them on."""
+"""Markers that were opened: shows them, solves them, or hands them on."""
 
 from __future__ import annotations
 
@@ -41,24 +41,45 @@ class MarkersDesk(QObject):
         super().__init__(opening)
         self._window, self._opening = window, opening
         self._bridge, self._jobs, self._messages = window.bridge, window.jobs, window.messages
-        opening.markers_found.connect(self._offer)
+        opening.markers_found.connect(lambda markers, _partner: self._open(markers))
 
-    def _offer(self, markers: Sequence[MarkerTake], partner: bool) -> None:
+    def ask_solve(self, markers: Sequence[MarkerTake], partner: bool = False) -> None:
+        """Ask for a template, and solve markers to its skeleton; or compare them as they are."""
         state = self._bridge.state
         # The take under review is the likeliest template.
         performers = sorted(state.scene.performers, key=lambda one: one.id != state.active)
         dialog = MarkersDialog(markers, [one.take for one in performers], self._window)
         dialog.solve_wanted.connect(partial(self._solve, markers, partner))
-        dialog.compare_wanted.connect(partial(self._compare, markers))
+        dialog.compare_wanted.connect(partial(self.compare, markers))
         dialog.open()
 
-    def _compare(self, markers: Sequence[MarkerTake]) -> None:
+    def compare(self, markers: Sequence[MarkerTake]) -> None:
+        """Set markers beside another performance, in the Compare workspace."""
         from mocapstudio.gui.workspaces.compare import CompareWorkspace
 
         self._window.switching.show("compare")
         workspace = self._window.switching.front
         if isinstance(workspace, CompareWorkspace):
             workspace.working.take_in(markers)
+
+    def show(self) -> None:
+        """Bring the Markers workspace to the front."""
+        self._window.switching.show("markers")
+
+    def _open(self, markers: Sequence[MarkerTake]) -> None:
+        """Take markers into the sitting; those that are open already are only shown."""
+        from mocapstudio.gui.workspaces.markers import MarkersWorkspace
+
+        document, first = self._bridge.document, ""
+        for take in markers:
+            known = next((p.id for p in self._bridge.state.markers if _same(p.take, take)), "")
+            first = first or known or document.open_markers(take)
+            if take.source is not None:
+                settings.add_recent("files", take.source.path)
+        self.show()
+        workspace = self._window.switching.front
+        if isinstance(workspace, MarkersWorkspace):
+            workspace.bridge.show(first)
 
     def _solve(self, markers: Sequence[MarkerTake], partner: bool, template: Template) -> None:
         manner = self._opening.manner
@@ -89,6 +110,7 @@ class MarkersDesk(QObject):
             self._opening.imports.note_solved(solved.take, markers.source.path, remarks)
             settings.add_recent("files", markers.source.path)
         self._opening.opened.emit()
+        self._window.switching.show("review")
         tip = "See how well the joints fit the markers"
         link = Link("Import report", tip, self._opening.report_wanted.emit)
         self._messages.tell(f"Solved {markers.name}: {_fit(solved)}.", link)
@@ -106,3 +128,15 @@ def _solving(
 def _fit(solved: Solved) -> str:
     mean, largest = solved.mean * _CENTIMETRES, solved.max * _CENTIMETRES
     return f"markers lie {mean:.1f} cm off the solved joints on average, {largest:.1f} cm at most"
+
+
+def _same(one: MarkerTake, other: MarkerTake) -> bool:
+    """Whether two takes come from the same performer of the same file, of the same content."""
+    if one.source is None or other.source is None:
+        return one is other
+    return (
+        one.source.performer == other.source.performer
+        and one.source.path.resolve() == other.source.path.resolve()
+        and one.source.digest == other.source.digest
+        and one.source.options == other.source.options
+    )

@@ -16,6 +16,7 @@ from mocapstudio.gui.jobs import Jobs
 from mocapstudio.gui.messages import Messages
 from mocapstudio.gui.opening import Opening
 from mocapstudio.motion.errors import NoRateError
+from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.take import Take
 from mocapstudio.review.model import Performer, Sitting
@@ -58,8 +59,15 @@ class Rereading(QObject):
 
     def touched(self, path: Path) -> tuple[str, ...]:
         """Return the performers of a file about whom something was decided: it would be lost."""
-        sitting = self._bridge.state.sitting
-        return tuple(one.id for one in self._performers(path) if _touched(sitting, one.id))
+        sitting, wanted = self._bridge.state.sitting, path.resolve()
+        markers = (
+            one.id
+            for one in self._bridge.state.markers
+            if one.take.source is not None and one.take.source.path.resolve() == wanted
+        )
+        edited = tuple(one for one in markers if _touched(sitting, one))
+        own = tuple(one.id for one in self._performers(path) if _touched(sitting, one.id))
+        return (*own, *edited)
 
     def look(self, path: Path) -> None:
         """Find out what is odd about a file that came with a session."""
@@ -113,7 +121,7 @@ class Rereading(QObject):
         self._note((list(takes or found), report, options))
         if not takes:
             # What was solved from them stays; they have to be solved again.
-            self._opening.markers_found.emit(tuple(found), False)
+            self._put_markers([one for one in found if isinstance(one, MarkerTake)])
             return
         self._put(self._performers(path), takes)
         self._messages.tell(f"{path.name} was read again.")
@@ -131,6 +139,16 @@ class Rereading(QObject):
         for take in left.values():
             document.open_take(take, partner=all(one.partner for one in performers))
 
+    def _put_markers(self, takes: Sequence[MarkerTake]) -> None:
+        document, left = self._bridge.document, list(takes)
+        for old in self._bridge.state.markers:
+            for take in takes:
+                if _same_performer(old.take, take):
+                    document.replace_markers(old.id, take)
+                    left.remove(take)
+        if left:
+            self._opening.markers_found.emit(tuple(left), False)
+
     def _performers(self, path: Path) -> list[Performer]:
         wanted, scene = path.resolve(), self._bridge.state.scene
         return [one for one in scene.performers if self._imports.file_of(one.take) == wanted]
@@ -143,4 +161,12 @@ def _touched(sitting: Sitting, performer: str) -> bool:
     named |= {one.performer for one in sitting.protected}
     named |= {one.performer for one in sitting.contacts}
     named |= {one.performer for one in sitting.points}
+    named |= {one.performer for one in sitting.marker_edits}
     return performer in named
+
+
+def _same_performer(one: MarkerTake, other: MarkerTake) -> bool:
+    if one.source is None or other.source is None:
+        return False
+    same_file = one.source.path.resolve() == other.source.path.resolve()
+    return same_file and one.source.performer == other.source.performer

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from mocapstudio.cleaning.model import DigressionMap, Flag, Kind, Neighbour
+from mocapstudio.formats import Recording
 from mocapstudio.motion.facing import ROOT_POSITION
 from mocapstudio.motion.take import Take
 
@@ -28,17 +29,17 @@ _MEANING = {
 }
 
 
-def number(take: Take, frame: int) -> int:
+def number(take: Recording, frame: int) -> int:
     """Return the file's own number of a 0-based frame."""
     return take.first_frame + frame
 
 
-def seconds(take: Take, frame: float) -> str:
+def seconds(take: Recording, frame: float) -> str:
     """Write the time of a 0-based frame."""
     return f"{take.seconds(frame):.2f} s"
 
 
-def span(take: Take, start: int, end: int) -> str:
+def span(take: Recording, start: int, end: int) -> str:
     """Write a half-open span as time, length and the file's own frame numbers."""
     length = take.seconds(end - start)
     first, last = number(take, start), number(take, end - 1)
@@ -46,7 +47,7 @@ def span(take: Take, start: int, end: int) -> str:
     return f"{take.seconds(start):.2f}–{take.seconds(end):.2f} s ({length:.2f} s, {frames})"
 
 
-def rate(take: Take) -> str:
+def rate(take: Recording) -> str:
     """Write the rate as users know it: 120 Hz, 119.88 Hz."""
     return f"{float(take.rate):.2f}".rstrip("0").rstrip(".") + " Hz"
 

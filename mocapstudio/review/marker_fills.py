@@ -30,7 +30,9 @@ class FillMethod:
     name
         How the code calls it.
     words
-        As provenance and the desk name it.
+        As provenance and menus name it.
+    short
+        In a word.
     tip
         What it rests on.
     fill
@@ -39,23 +41,25 @@ class FillMethod:
 
     name: str
     words: str
+    short: str
     tip: str
     fill: Callable[[MarkerTake, Sequence[Declared] | None], MarkerTake]
 
 
 METHODS = (
-    FillMethod("best", "best available",
+    FillMethod("best", "best available", "Best",
                "What is known best: poses of other frames, then the rigid body, then bones, then a"
                " spline", complete),
-    FillMethod("spline", "spline",
+    FillMethod("spline", "spline", "Spline",
                "A cubic that keeps place and velocity at both edges; for short gaps", fill_spline),
-    FillMethod("rigid", "rigid body",
+    FillMethod("rigid", "rigid body", "Rigid",
                "Three or more markers on the same rigid body carry it", fill_rigid),
-    FillMethod("bones", "bones",
+    FillMethod("bones", "bones", "Bones",
                "Constant bone lengths and interpolated directions", fill_along_bones),
-    FillMethod("poses", "poses of other frames",
+    FillMethod("poses", "poses of other frames", "Other poses",
                "What the rest of the take tells of such poses; for long gaps", fill_from_poses),
-    FillMethod("straight", "straight line", "A straight line between the edges", fill_straight),
+    FillMethod("straight", "straight line", "Straight",
+               "A straight line between the edges", fill_straight),
 )  # fmt: skip
 """The ways there are, the one that suits most gaps first."""
 

@@ -3,19 +3,12 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import (
-    QFrame,
-    QHBoxLayout,
-    QLabel,
-    QScrollArea,
-    QToolButton,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtWidgets import QFrame, QScrollArea, QVBoxLayout, QWidget
 
-from mocapstudio.gui import icons, wording
+from mocapstudio.gui import wording
 from mocapstudio.gui.document import DocumentBridge
-from mocapstudio.gui.widgets.parts import ElidedLabel, Hint, label, panel
+from mocapstudio.gui.widgets.cards import icon_button, make_card
+from mocapstudio.gui.widgets.parts import Hint, label
 from mocapstudio.motion.take import Take
 from mocapstudio.review.model import Edit, Protected
 from mocapstudio.review.state import DocumentState
@@ -83,17 +76,19 @@ class EditsPage(QScrollArea):
         if edit.donor is not None:
             lines[-1] += f" ({edit.donor.take})"
         lines.append(f"{edit.author}, {edit.time.replace('T', ' ').removesuffix('Z')} UTC")
-        card, row = _card(title, lines, muted=edit.muted)
+        card, row = make_card(title, lines, muted=edit.muted)
         card.setObjectName(f"edit-{edit.id}")
         card.setProperty("flag", flag)
         document = self._bridge.document
-        mute = _button(
+        mute = icon_button(
             "eye-off" if edit.muted else "eye",
             "Switch the repair on again" if edit.muted else "Switch the repair off",
             "edit-mute",
         )
         mute.clicked.connect(lambda: document.mute_edit(edit.id, not edit.muted))
-        delete = _button("delete", "Delete the repair; its flag becomes open again", "edit-delete")
+        delete = icon_button(
+            "delete", "Delete the repair; its flag becomes open again", "edit-delete"
+        )
         delete.clicked.connect(lambda: document.delete_edit(edit.id))
         row.addWidget(mute)
         row.addWidget(delete)
@@ -101,37 +96,10 @@ class EditsPage(QScrollArea):
 
     def _protected_card(self, one: Protected, take: Take) -> QFrame:
         title = ", ".join(sorted(one.joints)) if one.joints else "All joints"
-        card, row = _card(title, [wording.span(take, one.start, one.end)])
+        card, row = make_card(title, [wording.span(take, one.start, one.end)])
         card.setObjectName("protected-span")
-        lift = _button("unprotect", "Lift the protection", "protected-lift")
+        lift = icon_button("unprotect", "Lift the protection", "protected-lift")
         document = self._bridge.document
         lift.clicked.connect(lambda: document.unprotect(one.joints, one.start, one.end))
         row.addWidget(lift)
         return card
-
-
-def _card(title: str, lines: list[str], *, muted: bool = False) -> tuple[QFrame, QHBoxLayout]:
-    card = panel("", "card")
-    row = QHBoxLayout(card)
-    row.setContentsMargins(10, 7, 6, 7)
-    row.setSpacing(2)
-    words = QVBoxLayout()
-    words.setSpacing(2)
-    head = ElidedLabel()
-    head.setProperty("role", "muted" if muted else "title")
-    head.show_text(f"{title} (off)" if muted else title)
-    words.addWidget(head)
-    for line in lines:
-        one: QLabel = label(line, "faint" if muted else "muted", wrap=True)
-        words.addWidget(one)
-    row.addLayout(words, 1)
-    return card, row
-
-
-def _button(icon: str, tip: str, name: str) -> QToolButton:
-    button = QToolButton()
-    button.setObjectName(name)
-    button.setIcon(icons.icon(icon))
-    button.setToolTip(tip)
-    button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-    return button

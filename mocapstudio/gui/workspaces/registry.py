@@ -43,4 +43,6 @@ WORKSPACES = (
           "Ctrl+2", "link", "mocapstudio.gui.workspaces.contacts:ContactsWorkspace"),
     Entry("compare", "&Compare", "Set performances beside a reference",
           "Ctrl+3", "compare", "mocapstudio.gui.workspaces.compare:CompareWorkspace"),
+    Entry("markers", "&Markers", "Fill the gaps of markers, mend their labels",
+          "Ctrl+4", "markers", "mocapstudio.gui.workspaces.markers:MarkersWorkspace"),
 )  # fmt: skip

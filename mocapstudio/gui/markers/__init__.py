@@ -1,0 +1,1 @@
+"""The Markers workspace: gaps seen, filled and exchanged."""

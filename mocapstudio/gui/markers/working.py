@@ -1,0 +1,134 @@
+"""Filling gaps in the background, and the edits that need no work."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import QObject
+
+from mocapstudio.gui.jobs import Jobs
+from mocapstudio.gui.markers.bridge import MarkersBridge
+from mocapstudio.gui.messages import Messages
+from mocapstudio.motion.declared import Declared
+from mocapstudio.motion.errors import MocapError
+from mocapstudio.motion.markers import MarkerTake
+from mocapstudio.review.marker_fills import METHODS, fill_method, filling
+from mocapstudio.review.marker_gaps import GapSpan
+from mocapstudio.review.marker_model import Fill, MarkerEdit
+
+
+class Working(QObject):
+    """Does what the commands ask for.
+
+    Parameters
+    ----------
+    bridge
+        What is shown and chosen.
+    jobs
+        Runs the filling.
+    messages
+        Is told what came of it.
+    parent
+        Qt's parent.
+    """
+
+    def __init__(
+        self, bridge: MarkersBridge, jobs: Jobs, messages: Messages, parent: QObject | None = None
+    ) -> None:
+        super().__init__(parent)
+        self._bridge, self._jobs, self._messages = bridge, jobs, messages
+
+    def fill(self, method: str) -> None:
+        """Fill the chosen marker's gap at the play head; one that was filled is filled anew."""
+        shown = self._bridge.shown
+        gap = shown.chosen_gap
+        if shown.marker is None or gap is None:
+            self._messages.tell("There is no gap of the chosen marker at the play head.")
+            return
+        span = Declared(shown.marker, *gap)
+        take = self._bridge.desk.document.unfilled(shown.performer, (span,))
+        self._start(take, method, (span,), f"{shown.marker}, {gap[1] - gap[0]} frames")
+
+    def fill_all(self) -> None:
+        """Fill every gap up to the length that is set."""
+        shown = self._bridge.shown
+        spans = [Declared(one.marker, one.start, one.end) for one in self.short_gaps()]
+        if shown.result is not None and spans:
+            words = f"{len(spans)} gaps up to {shown.longest} frames"
+            self._start(shown.result, METHODS[0].name, spans, words, {"longest": shown.longest})
+
+    def short_gaps(self) -> Sequence[GapSpan]:
+        """Return the gaps that `fill_all` would fill."""
+        return self._bridge.shown.gaps.up_to(self._bridge.shown.longest)
+
+    def clear(self) -> None:
+        """Take the chosen marker's samples away in the chosen span, or at the play head."""
+        shown = self._bridge.shown
+        if shown.marker is not None:
+            start, end = shown.span or (shown.frame, shown.frame + 1)
+            self._bridge.desk.document.clear_markers(shown.performer, [shown.marker], start, end)
+
+    def exchange(self, other: str, start: int, end: int) -> None:
+        """Exchange the chosen marker's label with another's over [start, end)."""
+        shown = self._bridge.shown
+        if shown.marker is not None:
+            document = self._bridge.desk.document
+            document.exchange_markers(shown.performer, shown.marker, other, start, end)
+            self._messages.tell(f"Exchanged {shown.marker} and {other} in {end - start} frames.")
+
+    def edits_here(self) -> list[MarkerEdit]:
+        """Edits that change the chosen marker in the chosen span, or at the play head."""
+        shown = self._bridge.shown
+        if shown.marker is None:
+            return []
+        start, end = shown.span or (shown.frame, shown.frame + 1)
+        return [one for one in shown.edits if one.touches(shown.marker, start, end)]
+
+    def take_back(self) -> None:
+        """Delete the last edit of the chosen marker here, whatever came after it elsewhere."""
+        here = self.edits_here()
+        if here:
+            self._bridge.desk.document.delete_marker_edits([here[-1].id])
+
+    def _start(
+        self,
+        take: MarkerTake,
+        method: str,
+        spans: Sequence[Declared],
+        words: str,
+        parameters: dict[str, int | float | str] | None = None,
+    ) -> None:
+        performer = self._bridge.shown.performer
+        doing = f"{words} could not be filled"
+
+        def done(fills: tuple[Fill, ...]) -> None:
+            document = self._bridge.desk.document
+            try:
+                if document.unfilled(performer, spans if len(spans) == 1 else ()) is not take:
+                    self._messages.tell("The take changed meanwhile: nothing was filled.")
+                    return
+                if fills:
+                    document.fill_gaps(performer, fills, method, parameters or {})
+            except MocapError as error:
+                self._messages.complain(error, doing)
+                return
+            self._tell(fills, len(spans), method)
+
+        self._jobs.start(
+            f"Filling {words}",
+            filling(take, method, spans),
+            done,
+            lambda error: self._messages.complain(error, doing),
+            key="markers-fill",
+        )
+
+    def _tell(self, fills: Sequence[Fill], wanted: int, method: str) -> None:
+        words = fill_method(method).words
+        if not fills:
+            short = "needs more than is there: try another way"
+            self._messages.tell(f"Nothing was filled: “{words}” {short}.")
+        elif wanted == 1:
+            one = fills[0]
+            self._messages.tell(f"Filled {one.marker} in {one.end - one.start} frames by {words}.")
+        else:
+            self._messages.tell(f"Filled {len(fills)} of {wanted} gaps by {words}.")
