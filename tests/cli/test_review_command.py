@@ -27,6 +27,25 @@ def test_a_missing_file_is_one_line(tmp_path, option):
     assert done.stderr == f"error: {missing}: -: no such file or folder\n"
 
 
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (["--live", "-"], "error: --live wants one TAKE, the reference"),
+        (["{take}", "--live", "gone.bvh"], "error: gone.bvh: -: no such file or folder"),
+        (["{take}", "--weights", "{take}"], "error: --weights and --labels belong to --live"),
+        (["{take}", "--live", "-", "--weights", "{take}"], "error: {take}: 1: is not JSON"),
+    ],
+)
+def test_what_live_wants_is_said_on_one_line(tmp_path, given, said):
+    take = tmp_path / "take.bvh"
+    take.write_text("HIERARCHY\n")
+    words = [one.format(take=take) for one in given]
+    done = subprocess.run([*COMMAND, *words], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 2
+    assert done.stderr.startswith(said.format(take=take))
+    assert len(done.stderr.splitlines()) == 1
+
+
 def test_without_a_display_it_says_so(tmp_path):
     bare = environment(tmp_path)
     for name in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM"):

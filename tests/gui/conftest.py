@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import pytest
-from hands import Hands
-from PySide6.QtCore import QEvent, QSettings
+from hands import CTRL, Hands
+from PySide6.QtCore import QEvent, QEventLoop, QSettings
+from PySide6.QtWidgets import QApplication
 
 from mocapstudio import formats
 
@@ -99,3 +100,57 @@ def desk(open_desk):
 def hands(desk, qtbot) -> Hands:
     """A user at that desk."""
     return Hands(desk, qtbot)
+
+
+@pytest.fixture(scope="module")
+def window(qapp, tmp_path_factory):
+    """One desk for all tests of this file, with settings of its own: opening one takes seconds."""
+    from mocapstudio.gui.application import make_application
+    from mocapstudio.gui.main_window import MainWindow
+
+    home = tmp_path_factory.mktemp("home")
+    QSettings.setPath(QSettings.Format.IniFormat, QSettings.Scope.UserScope, str(home / "config"))
+    with pytest.MonkeyPatch.context() as patch:
+        for name in ("STATE_HOME", "CACHE_HOME", "DATA_HOME"):
+            patch.setenv(f"XDG_{name}", str(home / name))
+        make_application()
+        made = MainWindow()
+        made.resize(1440, 900)
+        made.move(0, 0)
+        filled = []
+        made.workspace.filled.connect(lambda: filled.append(True))
+        made.start()
+        while not filled:
+            qapp.processEvents(QEventLoop.ProcessEventsFlag.AllEvents, 50)
+        yield made
+        made.close_without_asking()
+        made.deleteLater()
+        qapp.processEvents()
+        qapp.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+
+
+@pytest.fixture
+def compare_hands(window, qtbot):
+    """A user at that shared desk, who finds it empty and in the Compare workspace."""
+    from mocapstudio.comparison.parameters import ComparisonParameters
+    from mocapstudio.gui.compare.bridge import CompareUi
+    from mocapstudio.gui.compare.live_bridge import LiveShown
+    from mocapstudio.review.document import Document
+
+    user = Hands(window, qtbot)
+    window.jobs.cancel()
+    window.bridge.replace(Document())
+    window.activateWindow()
+    qtbot.waitUntil(window.isActiveWindow, timeout=20_000)
+    user.press("3", CTRL)
+    workspace = window.switching.front
+    workspace.live_mode.hang_up()
+    workspace.live_mode.stop()
+    workspace.live.set(**vars(LiveShown()))
+    workspace.bridge.sitting.clear()
+    workspace.bridge.sitting.set_parameters(ComparisonParameters())
+    workspace.bridge.set_ui(**asdict(CompareUi()))
+    yield user
+    # What one test leaves open must not stand in the way of the next.
+    while (modal := QApplication.activeModalWidget()) is not None:
+        modal.close()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
-from dataclasses import asdict, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,18 +12,15 @@ from hands import CTRL, SHIFT, Hands
 from made_comparison import shortened
 from made_takes import paced, walking
 from mouse import click, drag, wheel
-from PySide6.QtCore import QEvent, QEventLoop, QPointF, QSettings, Qt
+from PySide6.QtCore import QPointF, Qt
 from PySide6.QtWidgets import QApplication, QLineEdit, QTableView
 from test_desk_layout import cut_texts
 
 from mocapstudio import formats
-from mocapstudio.comparison.parameters import ComparisonParameters
-from mocapstudio.gui.compare.bridge import CompareUi
 from mocapstudio.gui.dialogs.trouble import TroubleDialog
 from mocapstudio.gui.viewport.canvas import Canvas
 from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.review.comparing import MOST_SOURCES
-from mocapstudio.review.document import Document
 
 SECONDS, RATE = 4.0, 60
 
@@ -49,50 +46,10 @@ def takes(performances):
     return [formats.read(path)[0][0] for path in performances]
 
 
-@pytest.fixture(scope="module")
-def window(qapp, tmp_path_factory):
-    """One desk for all tests of this file, with settings of its own: opening one takes seconds."""
-    from mocapstudio.gui.application import make_application
-    from mocapstudio.gui.main_window import MainWindow
-
-    home = tmp_path_factory.mktemp("home")
-    QSettings.setPath(QSettings.Format.IniFormat, QSettings.Scope.UserScope, str(home / "config"))
-    with pytest.MonkeyPatch.context() as patch:
-        for name in ("STATE_HOME", "CACHE_HOME", "DATA_HOME"):
-            patch.setenv(f"XDG_{name}", str(home / name))
-        make_application()
-        made = MainWindow()
-        made.resize(1440, 900)
-        made.move(0, 0)
-        filled = []
-        made.workspace.filled.connect(lambda: filled.append(True))
-        made.start()
-        while not filled:
-            qapp.processEvents(QEventLoop.ProcessEventsFlag.AllEvents, 50)
-        yield made
-        made.close_without_asking()
-        made.deleteLater()
-        qapp.processEvents()
-        qapp.sendPostedEvents(None, QEvent.Type.DeferredDelete)
-
-
 @pytest.fixture
-def hands(window, qtbot):
-    """A user at that desk, who finds it empty and in the Compare workspace."""
-    user = Hands(window, qtbot)
-    window.jobs.cancel()
-    window.bridge.replace(Document())
-    window.activateWindow()
-    qtbot.waitUntil(window.isActiveWindow, timeout=20_000)
-    user.press("3", CTRL)
-    workspace = window.switching.front
-    workspace.bridge.sitting.clear()
-    workspace.bridge.sitting.set_parameters(ComparisonParameters())
-    workspace.bridge.set_ui(**asdict(CompareUi()))
-    yield user
-    # What one test leaves open must not stand in the way of the next.
-    while (modal := QApplication.activeModalWidget()) is not None:
-        modal.close()
+def hands(compare_hands):
+    """A user at a desk of this file's own, who finds it empty and in the Compare workspace."""
+    return compare_hands
 
 
 @pytest.fixture

@@ -46,6 +46,8 @@ class LiveRequest:
         Segments of the reference, one take or several.
     wait
         Whether the action's beginning is waited for.
+    descriptor
+        What lines are read from in place of standard input.
     """
 
     reference: Path
@@ -57,6 +59,7 @@ class LiveRequest:
     labels: Labels | None = None
     labels_file: Path | None = None
     wait: bool = True
+    descriptor: int | None = None
 
 
 def open_live(window: MainWindow, request: LiveRequest) -> None:
@@ -108,8 +111,8 @@ def _begin(
         sitting.add_sources([source])
         mode.begin()
         return
-    lines = Lines(_standard_input())
-    rate = None if request.options is None or request.options.fps is None else request.options.fps
+    lines = Lines(_standard_input() if request.descriptor is None else request.descriptor)
+    rate = None if request.options is None else request.options.fps
     feed = StreamFeed(lines.take, lambda: lines.ended, request.names)
     mode.listen(feed, str(STANDARD_INPUT), None if rate is None else float(rate), lines.close)
 
