@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.take import Source
+from mocapstudio.motion.timed import Timed
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,7 @@ class Event:
 
 
 @dataclass(frozen=True, eq=False)
-class MarkerTake:
+class MarkerTake(Timed):
     """Labelled markers of one performer, in metres and seconds, Y up, right-handed.
 
     Parameters
@@ -83,27 +84,12 @@ class MarkerTake:
             raise MocapError("marker labels repeat in one take")
         if self.filled is not None and self.filled.shape != self.positions.shape[:2]:
             raise MocapError("filled must have shape (frames, markers)")
-        if self.frames == 0:
-            raise MocapError("a take needs at least one frame")
-        if self.rate <= 0:
-            raise MocapError("a take needs a positive rate")
-        if self.trim is not None and not 0 <= self.trim[0] < self.trim[1] <= self.frames:
-            raise MocapError(f"trim {self.trim} lies outside the take's {self.frames} frames")
+        self.check_time()
 
     @property
     def frames(self) -> int:
         """Number of frames."""
         return len(self.positions)
-
-    @property
-    def duration(self) -> float:
-        """Length in seconds."""
-        return self.frames / float(self.rate)
-
-    @property
-    def span(self) -> tuple[int, int]:
-        """The trimmed span, or all frames."""
-        return self.trim or (0, self.frames)
 
     @cached_property
     def index(self) -> dict[str, int]:
@@ -114,10 +100,6 @@ class MarkerTake:
     def missing(self) -> NDArray[np.bool_]:
         """(F, M) True where a marker has no position."""
         return np.asarray(np.isnan(self.positions).any(axis=2))
-
-    def seconds(self, frame: float) -> float:
-        """Time of a 0-based frame, in seconds."""
-        return frame / float(self.rate)
 
     def with_positions(
         self, positions: NDArray[np.float64], filled: NDArray[np.bool_] | None = None

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.skeleton import Skeleton
+from mocapstudio.motion.timed import Timed
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +52,7 @@ class Source:
 
 
 @dataclass(frozen=True, eq=False)
-class Take:
+class Take(Timed):
     """Skeleton and motion of one performer, in metres, radians and seconds, Y up, right-handed.
 
     Parameters
@@ -100,31 +101,12 @@ class Take:
             raise MocapError("translations must have shape (frames, translated joints, 3)")
         if not self.translated or self.translated[0] != 0:
             raise MocapError("the first translated joint must be the root")
-        if frames == 0:
-            raise MocapError("a take needs at least one frame")
-        if self.rate <= 0:
-            raise MocapError("a take needs a positive rate")
-        if self.trim is not None and not 0 <= self.trim[0] < self.trim[1] <= frames:
-            raise MocapError(f"trim {self.trim} lies outside the take's {frames} frames")
+        self.check_time()
 
     @property
     def frames(self) -> int:
         """Number of frames."""
         return len(self.rotations)
-
-    @property
-    def duration(self) -> float:
-        """Length in seconds."""
-        return self.frames / float(self.rate)
-
-    @property
-    def span(self) -> tuple[int, int]:
-        """The trimmed span, or all frames."""
-        return self.trim or (0, self.frames)
-
-    def seconds(self, frame: float) -> float:
-        """Time of a 0-based frame, in seconds."""
-        return frame / float(self.rate)
 
     def with_motion(
         self,
