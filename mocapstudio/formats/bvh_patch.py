@@ -18,6 +18,7 @@ from mocapstudio.formats.changes import Changes, changes, runs, undeclared
 from mocapstudio.formats.euler import nearest_euler
 from mocapstudio.formats.frame_time import frame_time, stated_rate
 from mocapstudio.formats.reading import Reading
+from mocapstudio.formats.splicing import Splice, spliced
 from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.errors import MocapError
@@ -25,7 +26,6 @@ from mocapstudio.motion.take import Source, Take
 
 Array = NDArray[np.float64]
 Cells = dict[int, dict[int, float]]
-Splice = tuple[int, int, bytes]
 
 _FEWEST_DECIMALS = 6
 
@@ -67,7 +67,7 @@ def patched(take: Take, declared: Sequence[Declared], *, trim: bool) -> Iterator
     if trim and take.trim is not None:
         cut = text.trimmed(*take.trim)
         splices = [*(s for s in splices if not _inside(s, cut)), *cut]
-    return _spliced(record.data, sorted(splices))
+    return spliced(record.data, sorted(splices))
 
 
 def as_read(take: Take, source: Source) -> tuple[Array, Take]:
@@ -199,12 +199,3 @@ def _rate_splice(record: BvhRecord, rate: Fraction) -> list[Splice]:
 
 def _inside(splice: Splice, cuts: list[Splice]) -> bool:
     return any(a <= splice[0] and splice[1] <= b for a, b, _ in cuts)
-
-
-def _spliced(data: bytes, splices: list[Splice]) -> Iterator[bytes]:
-    at = 0
-    for start, end, text in splices:
-        yield data[at:start]
-        yield text
-        at = end
-    yield data[at:]

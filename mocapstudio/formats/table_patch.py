@@ -8,21 +8,20 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapstudio.formats.marker_changes import check_declared, marker_changes
+from mocapstudio.formats.splicing import Splice, spliced
 from mocapstudio.formats.table_layout import off_origin
 from mocapstudio.formats.table_model import TableRecord
 from mocapstudio.formats.table_motion import as_read
 from mocapstudio.formats.table_sheet import Sheet
 from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.declared import Declared
-from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.markers import MarkerTake
 
 Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-Splice = tuple[int, int, bytes]
 
-# Metres: what turning there and back leaves, and what the last digit must tell.
-_SAME, _TOLD = 1e-9, 1e-6
+# Metres: what the last digit must tell.
+_TOLD = 1e-6
 _TIME_DECIMALS = 6
 
 
@@ -44,8 +43,8 @@ def patched(take: MarkerTake, declared: Sequence[Declared]) -> Iterator[bytes]:
     source = take.source
     assert source is not None
     record: TableRecord = source.record
-    changed = _changed(take, as_read(source))
-    _refuse_undeclared(take, changed, declared)
+    changed = marker_changes(take, take.labels, as_read(source))
+    check_declared(take, changed, declared)
     splices = list(_rate_splices(take, record))
     back = rot.conjugate(source.to_inside)
     for frame in np.flatnonzero(changed.any(axis=1)):
@@ -57,31 +56,7 @@ def patched(take: MarkerTake, declared: Sequence[Declared]) -> Iterator[bytes]:
             texts = _texts(value, record, line, source.unit)
             cells.update(zip(record.columns.places[marker], texts, strict=True))
         splices += _replaced(record.sheet, line, cells)
-    return _spliced(record.sheet.data, sorted(splices))
-
-
-def _changed(take: MarkerTake, original: Array) -> Mask:
-    if take.positions.shape != original.shape:
-        raise MocapError(
-            f"{take.name} has other markers or frames than its source: it must be written anew"
-        )
-    moved = np.linalg.norm(take.positions - original, axis=2) > _SAME
-    return np.asarray(moved | (take.missing != np.isnan(original).any(axis=2)))
-
-
-def _refuse_undeclared(take: MarkerTake, changed: Mask, declared: Sequence[Declared]) -> None:
-    allowed = np.zeros_like(changed)
-    for one in declared:
-        if one.row not in take.index:
-            raise MocapError(f"declared row {one.row} is none of {take.name}'s")
-        allowed[max(one.start, 0) : max(one.end, 0), take.index[one.row]] = True
-    frames, markers = np.nonzero(changed & ~allowed)
-    if len(frames):
-        label, more = take.labels[int(markers[0])], len(frames) - 1
-        many = f" and {more} more" if more else ""
-        raise MocapError(
-            f"{take.name}: changed without being declared: {label} at frame {frames[0]}{many}"
-        )
+    return spliced(record.sheet.data, sorted(splices))
 
 
 def _texts(value: Array, record: TableRecord, line: int, unit: float) -> list[bytes]:
@@ -146,12 +121,3 @@ def _number(sheet: Sheet, line: int, column: int) -> float:
         return float(text)
     except ValueError:
         return 0.0
-
-
-def _spliced(data: bytes, splices: list[Splice]) -> Iterator[bytes]:
-    at = 0
-    for start, end, text in splices:
-        yield data[at:start]
-        yield text
-        at = end
-    yield data[at:]
