@@ -106,8 +106,23 @@ def draw_cells(p: QPainter, at: Frame, pooled: PooledMap, table: NDArray[np.uint
     width = (min(last * step, pooled.frames) - first * step) * at.per_frame
     # The last block of a take may be shorter than the others.
     full = (last - first) * step * at.per_frame
+    draw_limbs(p, at, pixels, left, width, full)
+
+
+def draw_limbs(
+    p: QPainter, at: Frame, pixels: NDArray[np.uint32], left: float, shown: float, full: float
+) -> None:
+    """Draw a picture of all rows, each limb in one piece.
+
+    Parameters
+    ----------
+    pixels
+        (R, N) colours, one a row and block of frames; contiguous.
+    left, shown, full
+        Where the first block begins, how much of the picture is seen, and how wide all blocks are.
+    """
     p.save()
-    p.setClipRect(QRectF(left, at.area.top(), width, at.area.height()).intersected(at.area))
+    p.setClipRect(QRectF(left, at.area.top(), shown, at.area.height()).intersected(at.area))
     for group in at.rows.groups:
         one, other = at.rows.index[group.rows[0]], at.rows.index[group.rows[-1]]
         part = pixels[one : other + 1]

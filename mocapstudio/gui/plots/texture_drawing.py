@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtGui import QColor, QImage, QPainter, QPaintEvent
+from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QWidget
 
 from mocapstudio.gui import theme as themes
 from mocapstudio.gui.plots.axes import small_font
-from mocapstudio.gui.plots.map_drawing import Frame
+from mocapstudio.gui.plots.map_drawing import Frame, draw_limbs
 from mocapstudio.gui.plots.pooling import block_length
 from mocapstudio.gui.plots.texture_colours import SOFT, TexturePicture, rgb
 from mocapstudio.gui.plots.time_plot import RIGHT_GUTTER
@@ -40,17 +40,7 @@ def draw_texture(
     shown = (min(last * step, picture.frames) - first * step) * per
     # The last block of a texture may be shorter than the others.
     full = (last - first) * step * per
-    p.save()
-    p.setClipRect(QRectF(left, at.area.top(), shown, at.area.height()).intersected(at.area))
-    for group in at.rows.groups:
-        one, other = at.rows.index[group.rows[0]], at.rows.index[group.rows[-1]]
-        part = pixels[one : other + 1]
-        image = QImage(
-            part.data, part.shape[1], part.shape[0], part.strides[0], QImage.Format.Format_RGB32
-        )
-        top, bottom = at.rows.extent(group)
-        p.drawImage(QRectF(left, at.area.top() + top, full, bottom - top), image)
-    p.restore()
+    draw_limbs(p, at, pixels, left, shown, full)
 
 
 class TextureKey(QWidget):

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, Qt
+from PySide6.QtCore import QPoint, QPointF, QRectF, Qt
 from PySide6.QtGui import QPainter, QShowEvent
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QStackedWidget, QToolTip, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QStackedWidget, QToolTip
 
 from mocapstudio.gui import theme as themes
 from mocapstudio.gui.document import DocumentBridge, UiState
@@ -15,6 +15,7 @@ from mocapstudio.gui.plots import colours, map_readout
 from mocapstudio.gui.plots import map_drawing as drawing
 from mocapstudio.gui.plots.context_choice import ContextChoice, CornerButton
 from mocapstudio.gui.plots.layers import Layer
+from mocapstudio.gui.plots.plot_view import PlotView, in_a_row
 from mocapstudio.gui.plots.pooling import PooledMap
 from mocapstudio.gui.plots.row_labels import RowLabels
 from mocapstudio.gui.plots.rows import Group, RowLayout, limb_groups
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
     from mocapstudio.review.document import DocumentState
 
 
-class BesideView(QWidget):
+class BesideView(PlotView):
     """Shows what `UiState.beside` says; while hidden it does nothing.
 
     Parameters
@@ -47,10 +48,6 @@ class BesideView(QWidget):
 
     def __init__(self, bridge: DocumentBridge, second: SecondMap, time_range: TimeRange) -> None:
         super().__init__()
-        # A native window of its own spares the desk from compositing itself at every play head.
-        self.setAttribute(Qt.WidgetAttribute.WA_DontCreateNativeAncestors)
-        self.setAttribute(Qt.WidgetAttribute.WA_NativeWindow)
-        self.setAttribute(Qt.WidgetAttribute.WA_StyledBackground)
         self._bridge, self._second = bridge, second
         self._shown: DocumentState | None = None
         self._of: tuple[object, ...] = ()
@@ -88,20 +85,13 @@ class BesideView(QWidget):
         self.key.addWidget(TextureKey())
         self.key.addWidget(self.note)
         self.key.setFixedWidth(RIGHT_GUTTER)
-        row = QHBoxLayout()
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(0)
-        for part in (self.labels, self.plot, self.key):
-            row.addWidget(part, 1 if part is self.plot else 0)
-        desk = QWidget()
-        desk.setLayout(row)
         self.empty.setObjectName("beside-hint")
         self.empty.setProperty("role", "hint")
         self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.empty.setWordWrap(True)
         whole = QHBoxLayout(self)
         whole.setContentsMargins(0, 0, 0, 0)
-        whole.addWidget(desk)
+        whole.addWidget(in_a_row(self.labels, self.plot, self.key))
         self.empty.setParent(self.plot)
         self.setMinimumHeight(100)
 
@@ -189,13 +179,11 @@ class BesideView(QWidget):
         self.empty.setGeometry(area.toRect())
         self.plot.refresh_layers()
 
-    def changeEvent(self, event: QEvent) -> None:
-        """Follow the theme."""
-        super().changeEvent(event)
-        if event.type() in (QEvent.Type.StyleChange, QEvent.Type.PaletteChange):
-            self.plot.restyle()
-            self.labels.update()
-            self.key.update()
+    def restyle(self) -> None:
+        """Take over the colours of the theme in force."""
+        self.plot.restyle()
+        self.labels.update()
+        self.key.update()
 
     # -- drawing
 

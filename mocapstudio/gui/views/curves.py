@@ -6,9 +6,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
+from PySide6.QtCore import QPointF, QRectF
 from PySide6.QtGui import QColor, QPainter, QPen
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QStackedLayout, QWidget
+from PySide6.QtWidgets import QWidget
 
 from mocapstudio.formats.euler_order import euler_order
 from mocapstudio.gui import theme as themes
@@ -18,6 +18,7 @@ from mocapstudio.gui.plots.axes import ValueAxis
 from mocapstudio.gui.plots.curve_panels import VALUE_AXIS_WIDTH, CurvePanel, ReadOut
 from mocapstudio.gui.plots.curve_set import CurveSet, Role, differing
 from mocapstudio.gui.plots.layers import Layer, draw_trim
+from mocapstudio.gui.plots.plot_view import HintedPlotView, in_a_row
 from mocapstudio.gui.plots.quantities import (
     Curves,
     Quantity,
@@ -41,7 +42,7 @@ _DECIMALS = {"°": 1, "m": 3, "m/s": 2, "°/s": 0}
 _DEFAULT_ORDER = "ZXY"
 
 
-class CurvesView(QWidget):
+class CurvesView(HintedPlotView):
     """Shows one quantity of the selected row over time, before and after.
 
     A click moves the play head, a drag selects a span; zooming and panning as in the map.
@@ -63,10 +64,6 @@ class CurvesView(QWidget):
         parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
-        # A native window of its own spares the desk from compositing itself at every play head.
-        self.setAttribute(Qt.WidgetAttribute.WA_DontCreateNativeAncestors)
-        self.setAttribute(Qt.WidgetAttribute.WA_NativeWindow)
-        self.setAttribute(Qt.WidgetAttribute.WA_StyledBackground)
         self.setProperty("role", "panel")
         self._bridge = bridge
         self._shown: DocumentState | None = None
@@ -92,18 +89,8 @@ class CurvesView(QWidget):
         self.show_state(None, bridge.state)
 
     def _lay_out(self) -> None:
-        desk = QWidget()
-        row = QHBoxLayout(desk)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(0)
-        for part in (self.panel, self.plot, self.values):
-            row.addWidget(part, 1 if part is self.plot else 0)
-        self.empty = QLabel("Select a joint or a flag to see its curves")
-        self.empty.setProperty("role", "hint")
-        self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self._stack = QStackedLayout(self)
-        self._stack.addWidget(desk)
-        self._stack.addWidget(self.empty)
+        desk = in_a_row(self.panel, self.plot, self.values)
+        self.stand(desk, "Select a joint or a flag to see its curves")
         self.setMinimumHeight(100)
 
     # -- state
@@ -133,7 +120,7 @@ class CurvesView(QWidget):
         proposal = new.proposals.get(new.selection.flag or "") if row is not None else None
         anew = row != self._row or was is None or take is not was.take
         self._row = row
-        self._stack.setCurrentIndex(1 if row is None else 0)
+        self.show_hint(row is None)
         if anew or result is not self._result or proposal is not self._proposal:
             self._result, self._proposal = result, proposal
             self._compute()
@@ -233,15 +220,13 @@ class CurvesView(QWidget):
         texts = (_written(float(value), unit) for value in values)
         self.values.show_values(tuple(zip(shown.names, texts, strict=True)))
 
-    def changeEvent(self, event: QEvent) -> None:
-        """Follow the theme."""
-        super().changeEvent(event)
-        if event.type() in (QEvent.Type.StyleChange, QEvent.Type.PaletteChange):
-            self.plot.restyle()
-            self.axis.update()
-            self.curve_set.restyle()
-            self.panel.legend.update()
-            self.values.update()
+    def restyle(self) -> None:
+        """Take over the colours of the theme in force."""
+        self.plot.restyle()
+        self.axis.update()
+        self.curve_set.restyle()
+        self.panel.legend.update()
+        self.values.update()
 
     # -- drawing
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, Qt, QTimer
+from PySide6.QtCore import QPoint, QPointF, QRectF, Qt, QTimer
 from PySide6.QtGui import QPainter
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QStackedLayout, QToolButton, QToolTip, QWidget
+from PySide6.QtWidgets import QToolButton, QToolTip, QWidget
 
 from mocapstudio.cleaning.model import DigressionMap
 from mocapstudio.gui import theme as themes
@@ -17,6 +17,7 @@ from mocapstudio.gui.plots import map_drawing as drawing
 from mocapstudio.gui.plots.axes import TIME_AXIS_HEIGHT, small_font
 from mocapstudio.gui.plots.colour_bar import ColourBar
 from mocapstudio.gui.plots.layers import Layer, draw_trim
+from mocapstudio.gui.plots.plot_view import HintedPlotView, in_a_row
 from mocapstudio.gui.plots.pooling import PooledMap
 from mocapstudio.gui.plots.row_labels import RowLabels
 from mocapstudio.gui.plots.rows import Group, RowLayout, limb_groups
@@ -44,7 +45,7 @@ class MapPlot(TimePlot):
         return self._owner.flag_at(at) is not None
 
 
-class DigressionMapView(QWidget):
+class DigressionMapView(HintedPlotView):
     """Shows how far each row of the active take departs from its neighbours, and its flags.
 
     A click moves the play head, a click on a flag selects it, on a name its row; Shift-drag
@@ -68,10 +69,6 @@ class DigressionMapView(QWidget):
         parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
-        # A native window of its own spares the desk from compositing itself at every play head.
-        self.setAttribute(Qt.WidgetAttribute.WA_DontCreateNativeAncestors)
-        self.setAttribute(Qt.WidgetAttribute.WA_NativeWindow)
-        self.setAttribute(Qt.WidgetAttribute.WA_StyledBackground)
         self._bridge = bridge
         self._shown: DocumentState | None = None
         self._map: DigressionMap | None = None
@@ -93,12 +90,6 @@ class DigressionMapView(QWidget):
         self.show_state(None, bridge.state)
 
     def _lay_out(self) -> None:
-        desk = QWidget()
-        row = QHBoxLayout(desk)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(0)
-        for part in (self.labels, self.plot, self.bar):
-            row.addWidget(part, 1 if part is self.plot else 0)
         self.whole = QToolButton(self.bar)
         self.whole.setText("whole take")
         self.whole.setToolTip("Show the whole take (Home)")
@@ -107,12 +98,8 @@ class DigressionMapView(QWidget):
         self.whole.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.whole.setGeometry(4, 1, RIGHT_GUTTER - 10, TIME_AXIS_HEIGHT - 3)
         self.whole.hide()
-        self.empty = QLabel("Analyse a take to see its digression map")
-        self.empty.setProperty("role", "hint")
-        self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self._stack = QStackedLayout(self)
-        self._stack.addWidget(desk)
-        self._stack.addWidget(self.empty)
+        desk = in_a_row(self.labels, self.plot, self.bar)
+        self.stand(desk, "Analyse a take to see its digression map")
         self.setMinimumHeight(110)
 
     def _wire(self) -> None:
@@ -170,7 +157,7 @@ class DigressionMapView(QWidget):
 
     def _set_map(self, mapped: DigressionMap | None) -> None:
         take = self._shown.take if self._shown is not None else None
-        self._stack.setCurrentIndex(1 if mapped is None or take is None else 0)
+        self.show_hint(mapped is None or take is None)
         if mapped is self._map and (self._groups or mapped is None):
             return
         self._map = mapped
@@ -204,13 +191,11 @@ class DigressionMapView(QWidget):
         edits = any(edit.performer == state.active for edit in state.sitting.edits)
         self.labels.set_marks(state.selection.joints, tuple(worst), self._hovered, edits)
 
-    def changeEvent(self, event: QEvent) -> None:
-        """Follow the theme."""
-        super().changeEvent(event)
-        if event.type() in (QEvent.Type.StyleChange, QEvent.Type.PaletteChange):
-            self.plot.restyle()
-            self.labels.update()
-            self.bar.update()
+    def restyle(self) -> None:
+        """Take over the colours of the theme in force."""
+        self.plot.restyle()
+        self.labels.update()
+        self.bar.update()
 
     # -- drawing
 

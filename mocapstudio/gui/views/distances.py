@@ -5,13 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, Qt
+from PySide6.QtCore import QPoint, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen, QShowEvent
 from PySide6.QtWidgets import (
-    QHBoxLayout,
-    QLabel,
     QSizePolicy,
-    QStackedLayout,
     QToolTip,
     QVBoxLayout,
     QWidget,
@@ -25,6 +22,7 @@ from mocapstudio.gui.plots.axes import ValueAxis
 from mocapstudio.gui.plots.context_strip import ContextStrip
 from mocapstudio.gui.plots.curve_panels import PANEL_WIDTH, VALUE_AXIS_WIDTH, ReadOut
 from mocapstudio.gui.plots.layers import Layer
+from mocapstudio.gui.plots.plot_view import HintedPlotView, in_a_row
 from mocapstudio.gui.plots.profile_curve import Mark, marks_of, place_at, read_out, top_of
 from mocapstudio.gui.plots.time_plot import TimePlot
 from mocapstudio.gui.plots.time_range import TimeRange
@@ -55,7 +53,7 @@ class ProfilePlot(TimePlot):
         return self._owner.mark_at(at) is not None
 
 
-class DistancesView(QWidget):
+class DistancesView(HintedPlotView):
     """Shows the distance profile of the selected flag (paper 1, figure 3).
 
     Above the take itself on the desk's time axis: a click moves the play head. Below the takes of
@@ -75,10 +73,6 @@ class DistancesView(QWidget):
         self, bridge: DocumentBridge, reasons: Reasons, time_range: TimeRange | None = None
     ) -> None:
         super().__init__()
-        # A native window of its own spares the desk from compositing itself at every play head.
-        self.setAttribute(Qt.WidgetAttribute.WA_DontCreateNativeAncestors)
-        self.setAttribute(Qt.WidgetAttribute.WA_NativeWindow)
-        self.setAttribute(Qt.WidgetAttribute.WA_StyledBackground)
         self.setProperty("role", "panel")
         self._bridge, self._reasons = bridge, reasons
         self._shown: DocumentState | None = None
@@ -119,26 +113,18 @@ class DistancesView(QWidget):
         words.addWidget(self.name)
         words.addWidget(label("distance to every place of this take", "faint", wrap=True))
         words.addStretch(1)
-        above = QHBoxLayout()
-        above.setSpacing(0)
-        for part in (panel, self.plot, self.values):
-            above.addWidget(part, 1 if part is self.plot else 0)
         desk = QWidget()
         column = QVBoxLayout(desk)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
         # Shares of the height, whatever the two would like to have.
-        for part in (self.plot, self.strip):
+        above = in_a_row(panel, self.plot, self.values)
+        for part in (self.plot, above, self.strip):
             part.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Ignored)
-        column.addLayout(above, 4)
+        column.addWidget(above, 4)
         column.addWidget(self.strip, 3)
-        self.empty = QLabel()
+        self.stand(desk)
         self.empty.setObjectName("distances-hint")
-        self.empty.setProperty("role", "hint")
-        self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self._stack = QStackedLayout(self)
-        self._stack.addWidget(desk)
-        self._stack.addWidget(self.empty)
         self.setMinimumHeight(100)
 
     # -- state
@@ -173,7 +159,7 @@ class DistancesView(QWidget):
 
     def _set_profile(self, state: DocumentState, reason: Reason) -> None:
         profile, item = reason.profile, state.selected
-        self._stack.setCurrentIndex(1 if profile is None or item is None else 0)
+        self.show_hint(profile is None or item is None)
         self.empty.setText(_why_empty(state, reason))
         self._own, self._marks = None, ()
         if profile is not None and item is not None:
@@ -213,14 +199,12 @@ class DistancesView(QWidget):
         else:
             self.values.show_values((("here", f"{self._own.degrees[place]:.1f}°"),))
 
-    def changeEvent(self, event: QEvent) -> None:
-        """Follow the theme."""
-        super().changeEvent(event)
-        if event.type() in (QEvent.Type.StyleChange, QEvent.Type.PaletteChange):
-            self.plot.restyle()
-            self.axis.update()
-            self.strip.update()
-            self.values.update()
+    def restyle(self) -> None:
+        """Take over the colours of the theme in force."""
+        self.plot.restyle()
+        self.axis.update()
+        self.strip.update()
+        self.values.update()
 
     # -- drawing
 
