@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from mocapstudio.review.model import Edit
+from mocapstudio.review.provenance import change
 
 
 def as_json(path: Path, output: Path, edits: Sequence[Edit]) -> dict[str, Any]:
@@ -21,26 +22,15 @@ def as_json(path: Path, output: Path, edits: Sequence[Edit]) -> dict[str, Any]:
     edits
         Those of its performer, muted ones among them.
     """
-    changes = [_change(edit, row) for edit in edits if not edit.muted for row in edit.rows]
-    changes.sort(key=lambda change: (change["start"], change["joint"], -change["end"]))
+    found = [change(edit, row) for edit in edits if not edit.muted for row in edit.rows]
+    found.sort(key=lambda one: (one["start"], one["joint"], -one["end"]))
     told: list[dict[str, Any]] = []
-    for change in changes:
-        if not any(_covers(other, change) for other in told):
-            told.append(change)
+    for one in found:
+        if not any(_covers(other, one) for other in told):
+            told.append(one)
     return {"path": str(path), "output": str(output), "changes": told}
 
 
 def _covers(one: dict[str, Any], other: dict[str, Any]) -> bool:
     same = all(one[name] == other[name] for name in ("joint", "method", "donor"))
     return same and one["start"] <= other["start"] and other["end"] <= one["end"]
-
-
-def _change(edit: Edit, row: str) -> dict[str, Any]:
-    donor = edit.donor
-    return {
-        "joint": row,
-        "start": edit.start,
-        "end": edit.end,
-        "method": edit.method,
-        "donor": donor and {"take": donor.take, "start": donor.start, "end": donor.end},
-    }

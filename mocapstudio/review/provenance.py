@@ -23,7 +23,12 @@ def changes(edits: Iterable[Edit]) -> list[dict[str, Any]]:
     Frames are 0-based at the take's own rate, ends exclusive. Of overlapping changes the one
     decided last is in force.
     """
-    found = [_change(edit, row) for edit in edits if not edit.muted for row in edit.rows]
+    found = [
+        change(edit, row) | {"author": edit.author, "time": edit.time}
+        for edit in edits
+        if not edit.muted
+        for row in edit.rows
+    ]
     return sorted(found, key=lambda one: (one["start"], one["joint"], one["time"]))
 
 
@@ -80,7 +85,8 @@ def origin(take: Take | MarkerTake) -> dict[str, Any]:
     }
 
 
-def _change(edit: Edit, row: str) -> dict[str, Any]:
+def change(edit: Edit, row: str) -> dict[str, Any]:
+    """Return what an edit does to one of its rows, as JSON knows it."""
     donor = edit.donor
     return {
         "joint": row,
@@ -88,8 +94,6 @@ def _change(edit: Edit, row: str) -> dict[str, Any]:
         "end": edit.end,
         "method": edit.method,
         "donor": donor and {"take": donor.take, "start": donor.start, "end": donor.end},
-        "author": edit.author,
-        "time": edit.time,
     }
 
 
