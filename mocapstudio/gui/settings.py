@@ -46,11 +46,6 @@ def set_layout(key: str, value: QByteArray) -> None:
     _store().setValue(f"layout/{key}", value)
 
 
-def forget_layout() -> None:
-    """Go back to the layout that the desk comes with, from its next start."""
-    _store().remove("layout")
-
-
 def recent(kind: str) -> tuple[Path, ...]:
     """Return recent paths of one kind (``"files"`` or ``"contexts"``), latest first."""
     value = _store().value(f"recent/{kind}", [])

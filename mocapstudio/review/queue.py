@@ -95,11 +95,6 @@ class Queue:
         return sorted(items, key=lambda item: _rank(item.flag))
 
 
-def merge(flags: Iterable[Flag], decisions: Iterable[Decision]) -> tuple[QueueItem, ...]:
-    """Return the queue of one performer's flags and decisions."""
-    return Queue(flags).merged(decisions)
-
-
 _Place = tuple[str, int, int, str]
 
 

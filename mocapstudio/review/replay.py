@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-import numpy as np
-
 from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.facing import carrier
 from mocapstudio.motion.take import Take
@@ -80,11 +78,3 @@ class Results:
     def forget(self, performer: str) -> None:
         """Let go of one performer's result."""
         self._known.pop(performer, None)
-
-
-def changed_samples(before: Take, after: Take) -> tuple[np.ndarray, np.ndarray]:
-    """Where two takes of one shape differ: (F, J) of rotations, (F, T) of translations."""
-    rotations = (before.rotations != after.rotations).any(axis=2)
-    translations = (before.translations != after.translations).any(axis=2)
-    both_nan = np.isnan(before.rotations).all(axis=2) & np.isnan(after.rotations).all(axis=2)
-    return rotations & ~both_nan, translations

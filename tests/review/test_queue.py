@@ -8,7 +8,11 @@ from review_pieces import flag
 
 from mocapstudio.cleaning.model import Kind
 from mocapstudio.review.model import Decision, Verdict
-from mocapstudio.review.queue import merge, succeeds
+from mocapstudio.review.queue import Queue, succeeds
+
+
+def merge(flags, decisions):
+    return Queue(flags).merged(decisions)
 
 
 def _decided(one, verdict=Verdict.REJECTED, time="2026-01-01T00:00:00Z"):
