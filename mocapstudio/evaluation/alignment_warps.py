@@ -14,8 +14,8 @@ from mocapstudio.comparison.live import LiveAlignment, played
 from mocapstudio.comparison.online import OnlineAligner, Variant
 from mocapstudio.comparison.online_features import F64
 from mocapstudio.comparison.online_reference import reference_of
+from mocapstudio.evaluation.corpora import long_takes
 from mocapstudio.evaluation.kata_warps import Disturbance, perform_again
-from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.take import Take
 
@@ -112,15 +112,7 @@ def _followed(take: Take, again: Take, variant: Variant, motion: bool) -> F64:
 
 
 def _takes(data: Sequence[Path], seed: int, limit: int) -> list[Take]:
-    found: list[Take] = []
-    for path in formats.find_takes(list(data)):
-        try:
-            recordings, _ = formats.read_any(path)
-        except MocapError:
-            continue
-        found += [
-            one for one in recordings if isinstance(one, Take) and one.duration >= _LEAST_SECONDS
-        ]
+    found = list(long_takes(formats.find_takes(list(data)), _LEAST_SECONDS))
     if not found:
         return []
     longest = max(range(len(found)), key=lambda i: found[i].duration)

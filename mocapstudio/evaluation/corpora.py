@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -172,6 +172,16 @@ def read_some(
         if first is None or _form(first) == _form(take):
             takes.append(take)
     return takes if first is not None else same_kind(takes)
+
+
+def long_takes(files: Iterable[Path], seconds: float) -> Iterator[Take]:
+    """Read takes of joints that last at least so long; what cannot be read is passed over."""
+    for file in files:
+        try:
+            found, _ = formats.read_any(file)
+        except MocapError:
+            continue
+        yield from (one for one in found if isinstance(one, Take) and one.duration >= seconds)
 
 
 def join(takes: Sequence[Take], name: str | None = None) -> tuple[Take, Mask]:

@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from mocapstudio.comparison.labels import labels_of, read_labels
 from mocapstudio.comparison.parameters import PAPER, ROOT, ComparisonParameters
 from mocapstudio.comparison.segments import boundary_errors, suggested
 from mocapstudio.evaluation.alignment_cases import read_labelled
+from mocapstudio.evaluation.corpora import long_takes
 from mocapstudio.evaluation.kata_peers import Peer, peers
 from mocapstudio.evaluation.kata_warps import Disturbance, perform_again
 from mocapstudio.evaluation.tables import Table
@@ -153,16 +155,7 @@ def _warp_row(method: str, disturbance: str, errors: Sequence[Array]) -> WarpRow
 def _takes(data: Sequence[Path], seed: int, limit: int) -> list[Take]:
     files = list(formats.find_takes(list(data)))
     order = np.random.default_rng(seed).permutation(len(files))
-    takes: list[Take] = []
-    for i in order:
-        try:
-            found, _ = formats.read_any(files[i])
-        except MocapError:
-            continue
-        takes += [one for one in found if isinstance(one, Take)]
-        takes = [one for one in takes if one.duration >= _LEAST_SECONDS]
-        if len(takes) >= limit:
-            break
+    takes = list(islice(long_takes((files[i] for i in order), _LEAST_SECONDS), limit))
     if not takes:
         raise MocapError(f"no take of joints of at least {_LEAST_SECONDS:.0f} s can be read")
     return takes
