@@ -17,6 +17,7 @@ GENERAL = frozenset(
 def allowed(state: DocumentState) -> dict[str, bool]:
     """Tell of each command about the document whether it can be done; others always can."""
     take, some = state.take is not None, bool(state.everyone)
+    some = some or state.comparison.reference is not None
     item = state.selected
     span = state.selection.span is not None
     decided = item is not None and item.verdict is not Verdict.OPEN

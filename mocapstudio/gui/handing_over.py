@@ -6,7 +6,7 @@ import copy
 from collections.abc import Callable, Generator
 from pathlib import Path
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, Signal
 
 from mocapstudio.gui import settings
 from mocapstudio.gui.document import DocumentBridge
@@ -31,6 +31,9 @@ class HandingOver(QObject):
     parent
         Qt's parent.
     """
+
+    about_to_save = Signal()
+    """Emitted before the session is written: what else lasts can be handed to the document."""
 
     def __init__(
         self,
@@ -90,6 +93,7 @@ class HandingOver(QObject):
 
         At once, not in the background: the document announces that it was saved.
         """
+        self.about_to_save.emit()
         try:
             save(self._bridge.document, path)
         except (MocapError, OSError) as error:

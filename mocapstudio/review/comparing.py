@@ -13,6 +13,7 @@ from mocapstudio.comparison.parameters import TIMING_ONLY, ComparisonParameters
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.parameters import schemas
 from mocapstudio.review.announcer import Announcer
+from mocapstudio.review.comparing_kept import KeptComparison
 from mocapstudio.review.comparing_segments import Segments, check, with_segment
 from mocapstudio.review.comparing_state import (
     MOST_SOURCES,
@@ -38,6 +39,7 @@ class Comparing:
         self._state = ComparingState()
         self._steps = Steps()
         self._saved: Segments = ()
+        self._absent: object = None
         self._announcer: Announcer[ComparingState] = Announcer()
 
     @property
@@ -127,6 +129,40 @@ class Comparing:
         self._put(
             reference=None, sources=(), chosen="", frame=0, source_frame=0, shown=(-0.5, 0.5),
             row=None, segment=None, labels=None,
+        )  # fmt: skip
+
+    def kept(self) -> KeptComparison:
+        """Return what the session file keeps."""
+        state = self._state
+        return KeptComparison(
+            reference=state.reference,
+            sources=tuple((one.id, one.take) for one in state.sources),
+            parameters=state.parameters,
+            segments=state.segments,
+            labels=state.labels,
+            unsaved=state.unsaved,
+            chosen=state.chosen,
+            row=state.row,
+            segment=state.segment,
+            frame=state.frame,
+            source_frame=state.source_frame,
+            shown=state.shown,
+            absent=self._absent,
+        )
+
+    def restore(self, kept: KeptComparison) -> None:
+        """Go on with what a session file had kept; nothing of it can be undone."""
+        self._steps = Steps(Undoable(kept.segments, kept.parameters))
+        self._saved, self._absent = () if kept.unsaved else kept.segments, kept.absent
+        sources = tuple(Compared(one, take) for one, take in kept.sources)
+        ids = [one.id for one in sources]
+        chosen = kept.chosen if kept.chosen in ids else ids[0] if ids else ""
+        take = dict(kept.sources).get(chosen)
+        self._put(
+            reference=kept.reference, sources=sources, chosen=chosen, row=kept.row,
+            segment=kept.segment, labels=kept.labels, shown=kept.shown,
+            frame=self._kept(kept.frame, kept.reference),
+            source_frame=self._kept(kept.source_frame, take),
         )  # fmt: skip
 
     def choose(self, source: str) -> None:
@@ -290,6 +326,7 @@ class Comparing:
     def _begin_segments(self) -> None:
         """Forget the segments, and how to bring them back."""
         self._steps, self._saved = Steps(Undoable(parameters=self._state.parameters)), ()
+        self._absent = None
 
     def _at(self, at: int) -> Segment:
         if not 0 <= at < len(self._state.segments):

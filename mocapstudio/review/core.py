@@ -148,6 +148,8 @@ class Core:
             self._state = new
             if changed & _LASTING:
                 self.recorder.settled(new)
+            if "comparison" in changed:
+                self.recorder.compared(new.comparison)
             self._announcer.announce(old, new)
 
     def _commit(self, label: str, sitting: Sitting, **changes: Any) -> None:
@@ -249,7 +251,8 @@ def new_id() -> str:
 
 def lasting(state: DocumentState) -> dict[str, object]:
     """Fields of a state that outlive it in the session file, by name."""
-    return {name: getattr(state, name) for name in ("sitting", *_LASTING)}
+    found = {name: getattr(state, name) for name in ("sitting", *_LASTING)}
+    return found | {"comparison": state.comparison.lasting}
 
 
 def _user() -> str:

@@ -121,6 +121,11 @@ class Document(Viewing, Deciding, Contacting, Marking):
         self._saved = lasting(state)
         self._put(path=Path(path))
 
+    def mark_comparison_unsaved(self) -> None:
+        """Note that the session file holds another comparison."""
+        self._saved = self._saved | {"comparison": ()}
+        self._put()
+
     def set_problems(self, problems: Iterable[SessionProblem]) -> None:
         """Say what was wrong when the session was opened; nothing once the user has seen it."""
         self._put(problems=tuple(problems))

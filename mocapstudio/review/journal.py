@@ -19,6 +19,8 @@ import platformdirs
 
 from mocapstudio.motion.errors import FileError
 from mocapstudio.review import journal_records as records
+from mocapstudio.review.comparing_kept import KeptComparison
+from mocapstudio.review.comparing_wire import COMPARED, Recording, pack_comparison
 from mocapstudio.review.core import new_id
 from mocapstudio.review.document import Document
 from mocapstudio.review.lock import Lock, holder, is_open_here, lock_path
@@ -51,7 +53,7 @@ def unfinished(folder: Path | None = None) -> list[Path]:
     for path in sorted(folder.glob(f"*{_SUFFIX}"), key=lambda p: (p.stat().st_mtime, p.name)):
         if holder(path) is not None or is_open_here(path):
             continue
-        if any(isinstance(event, records.Stepped) for event in records.read(path).events):
+        if any(_decides(event) for event in records.read(path).events):
             left.append(path)
         else:
             path.unlink(missing_ok=True)
@@ -108,6 +110,8 @@ class Journal:
         self._clock = clock
         self._synced = -SYNC_SECONDS
         self._behind = False
+        # Takes that were written down as compared, and what they are called here.
+        self._compared: dict[Recording, str] = {}
         self.failure: FileError | None = None
         recovered = document.recovered
         if recovered is not None and not recovered.path.exists():
@@ -158,6 +162,19 @@ class Journal:
             )
         )
 
+    def compared(self, kept: KeptComparison) -> None:
+        """Write down what is compared; takes without a file once only."""
+        arrays = Arrays()
+        known = set(self._compared.values())
+
+        def name(take: Recording) -> str:
+            return self._compared.setdefault(take, f"{COMPARED}{new_id()}")
+
+        record = pack_comparison(kept, None, arrays, name)
+        old = tuple(f"takes/{one}/" for one in known)
+        fresh = {key: one for key, one in arrays.items() if not key.startswith(old)}
+        self._write(records.Compared(record, records.to_text(fresh)))
+
     def saved(self, document: Document) -> None:
         """Begin anew beside the session file that was just written."""
         old, path = self.path, self._place(document, keep=False)
@@ -166,7 +183,7 @@ class Journal:
             old.unlink(missing_ok=True)
             self._lock.release()
             self._lock = Lock(document.state.path or path, force=True)
-        self.path, self.failure = path, None
+        self.path, self.failure, self._compared = path, None, {}
         try:
             self._file = _open(path, "wb")
         except FileError as error:
@@ -229,6 +246,8 @@ class Journal:
             self.stepped(state.can_undo or "Decide", document.saved_sitting, state.sitting)
         if state.path is None or state.dirty:
             self.settled(state)
+            if state.comparison != KeptComparison():
+                self.compared(state.comparison)
 
     def _write(self, record: records.Head | records.Event) -> None:
         if self._file is None:
@@ -258,6 +277,12 @@ class Journal:
                 file.close()
             except OSError as error:
                 self.failure = FileError(self.path, f"cannot be closed: {error}")
+
+
+def _decides(event: records.Event) -> bool:
+    if isinstance(event, records.Compared):
+        return bool(event.comparison.segments)
+    return isinstance(event, records.Stepped)
 
 
 def _open(path: Path, mode: str) -> IO[bytes]:

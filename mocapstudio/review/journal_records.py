@@ -19,6 +19,7 @@ from typing import Any, Generic, TypeVar
 import msgspec
 
 from mocapstudio.motion.errors import FileError
+from mocapstudio.review.comparing_wire import ComparisonRecord
 from mocapstudio.review.contact_wire import ContactRecord, PointsRecord
 from mocapstudio.review.history import History, Step
 from mocapstudio.review.manner import MannerRecord
@@ -122,7 +123,14 @@ class Settled(Record, frozen=True, tag="settled"):
     manner: MannerRecord = MannerRecord()
 
 
-Event = Opened | Closed | Stepped | Undone | Redone | Settled
+class Compared(Record, frozen=True, tag="compared"):
+    """What is compared, as it is now; `samples` of takes without a file, where they are new."""
+
+    comparison: ComparisonRecord
+    samples: str = ""
+
+
+Event = Opened | Closed | Stepped | Undone | Redone | Settled | Compared
 _decoder: msgspec.json.Decoder[Head | Event] = msgspec.json.Decoder(Head | Event)
 
 

@@ -10,10 +10,13 @@ from typing import Any
 from mocapstudio.cleaning.parameters import DetectionParameters
 from mocapstudio.motion.errors import FileError, ParameterError
 from mocapstudio.motion.markers import MarkerTake
+from mocapstudio.review.comparing_kept import KeptComparison
+from mocapstudio.review.comparing_wire import Recording, check_comparison, unpack_comparison
 from mocapstudio.review.document import Document
 from mocapstudio.review.history import History
 from mocapstudio.review.journal_records import (
     Closed,
+    Compared,
     Event,
     Found,
     Opened,
@@ -28,6 +31,7 @@ from mocapstudio.review.model import Performer, Scene, Selection
 from mocapstudio.review.recorder import Recovered
 from mocapstudio.review.records import Arrays, MalformedError
 from mocapstudio.review.references import Finder, Relocate
+from mocapstudio.review.references import Found as FoundTake
 from mocapstudio.review.session_record import SessionRecord
 from mocapstudio.review.state import SessionProblem
 from mocapstudio.review.take_record import TakeRecord, absolute
@@ -70,6 +74,7 @@ class Opening:
         self._saved = saved
         self._takes = {take.id: take for take in record.takes}
         self._settled: Settled | None = None
+        self._comparison = record.comparison
         self._problems: list[SessionProblem] = []
         self._recovered: Recovered | None = None
 
@@ -108,6 +113,10 @@ class Opening:
                 self._history = advanced(self._history, event)
             case Settled():
                 self._settled = event
+            case Compared(comparison, samples):
+                self._arrays |= from_text(samples)
+                check_comparison(comparison)
+                self._comparison = comparison
             case _:
                 self._history = advanced(self._history, event)
 
@@ -136,19 +145,19 @@ class Opening:
             parameters=self._parameters(),
             manner=unpack_manner((self._settled or self._record).manner),
             markers=tuple(markers),
+            comparison=self._kept(),
             **self._view(scene),
         )
         if self._path is not None:
             document.mark_saved(self._path, self._record.save, self._saved)
+            if self._comparison != self._record.comparison:
+                document.mark_comparison_unsaved()
         document.recovered = self._recovered
         document.set_problems(self._problems)
         return document
 
     def _performer(self, record: TakeRecord) -> Performer | MarkerPerformer | None:
-        try:
-            found = self._finder.find(record, self._arrays)
-        except MalformedError as error:
-            raise FileError(self._path or "-", f"is damaged: {error}") from error
+        found = self._find(record)
         if found.problem is not None:
             self.tell(Path(record.absolute or record.name), found.problem, record.id)
         if found.take is None:
@@ -158,6 +167,25 @@ class Opening:
         places = {} if self._settled is None else self._settled.places
         offset, partner = places.get(record.id, (record.offset, record.partner))
         return Performer(record.id, found.take, offset, partner)
+
+    def _find(self, record: TakeRecord) -> FoundTake:
+        try:
+            return self._finder.find(record, self._arrays)
+        except MalformedError as error:
+            raise FileError(self._path or "-", f"is damaged: {error}") from error
+
+    def _kept(self) -> KeptComparison:
+        folder = None if self._path is None else self._path.parent
+        path = self._path or Path("-")
+        return unpack_comparison(
+            self._comparison, folder, self._compared, lambda what: self.tell(path, what)
+        )
+
+    def _compared(self, record: TakeRecord) -> Recording | None:
+        found = self._find(record)
+        if found.problem is not None:
+            self.tell(Path(record.absolute or record.name), f"compared: {found.problem}")
+        return found.take
 
     def _context(self) -> tuple[Path, ...]:
         if self._settled is not None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
+from mocapstudio.review.comparing_kept import KeptComparison
 from mocapstudio.review.marker_model import MarkerPerformer
 from mocapstudio.review.model import Performer, Sitting
 from mocapstudio.review.state import DocumentState
@@ -43,6 +44,9 @@ class Recorder(Protocol):
     def settled(self, state: DocumentState) -> None:
         """Something that lasts but cannot be undone changed, such as context or threshold."""
 
+    def compared(self, kept: KeptComparison) -> None:
+        """Other performances are compared, or otherwise."""
+
     def saved(self, document: Document) -> None:
         """All was written to the session file `document.state.path`."""
 
@@ -66,6 +70,9 @@ class Nobody:
         """Ignore it."""
 
     def settled(self, state: DocumentState) -> None:
+        """Ignore it."""
+
+    def compared(self, kept: KeptComparison) -> None:
         """Ignore it."""
 
     def saved(self, document: Document) -> None:

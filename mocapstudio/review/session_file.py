@@ -13,7 +13,8 @@ A zip archive with two entries:
     ``context``: paths, relative and absolute; ``parameters`` of detection; ``manner`` in which
     files are read;
     ``active``, ``frame``, ``joints``, ``span``, ``flag``: what was looked at;
-    ``flags`` and ``choices`` by performer, so that the queue shows before the next analysis.
+    ``flags`` and ``choices`` by performer, so that the queue shows before the next analysis;
+    ``comparison``: takes, parameters, segments and selection as in `comparing_wire`.
 ``samples.npz``
     ``edits/ID/rotations`` (frames, joints, 4) and ``edits/ID/translations`` (frames, 3), float64,
     metres; ``marker_edits/ID/positions`` (frames, markers, 3), with NaN where a marker stays
@@ -36,6 +37,7 @@ from mocapstudio import __version__
 from mocapstudio.formats.atomic import write_whole
 from mocapstudio.motion.errors import FileError
 from mocapstudio.review import journal_records, lock, session_record
+from mocapstudio.review.comparing_wire import COMPARED, pack_comparison
 from mocapstudio.review.core import new_id
 from mocapstudio.review.document import Document
 from mocapstudio.review.manner import pack_manner
@@ -131,6 +133,9 @@ def _recorded(document: Document, folder: Path) -> tuple[SessionRecord, Arrays]:
         flag=state.selection.flag,
         flags={one: tuple(map(pack_flag, document.flags(one))) for one in ids},
         choices={one: dict(document.choices(one)) for one in ids},
+        comparison=pack_comparison(
+            state.comparison, folder, arrays, lambda _take: f"{COMPARED}{new_id()}"
+        ),
     )
     return record, arrays
 

@@ -13,6 +13,7 @@ import msgspec
 
 from mocapstudio.motion.errors import FileError, MocapError
 from mocapstudio.motion.facing import ROOT_ROWS
+from mocapstudio.review.comparing_wire import ComparisonRecord, check_comparison
 from mocapstudio.review.manner import MannerRecord
 from mocapstudio.review.records import (
     Arrays,
@@ -65,6 +66,7 @@ class SessionRecord(Record, frozen=True):
     flag: str | None = None
     flags: dict[str, tuple[FlagRecord, ...]] = msgspec.field(default_factory=dict)
     choices: dict[str, dict[str, int | None]] = msgspec.field(default_factory=dict)
+    comparison: ComparisonRecord = ComparisonRecord()
 
 
 def to_bytes(record: SessionRecord, arrays: Arrays) -> bytes:
@@ -126,6 +128,7 @@ def check(record: SessionRecord) -> None:
     check_unique((e.id for e in record.sitting.edits), "edit")
     check_unique((e.id for e in record.sitting.marker_edits), "edit")
     check_unique((f"{c.id} of {c.performer}" for c in record.sitting.contacts), "contact")
+    check_comparison(record.comparison)
     checks = _Checks(record.takes)
     checks.sitting(record.sitting)
     for performer, flags in record.flags.items():

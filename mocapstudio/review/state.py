@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from mocapstudio.cleaning.model import Proposal
 from mocapstudio.cleaning.parameters import DetectionParameters
 from mocapstudio.motion.take import Take
+from mocapstudio.review.comparing_kept import KeptComparison
 from mocapstudio.review.manner import AS_THEY_ARE, Manner
 from mocapstudio.review.marker_model import MarkerPerformer
 from mocapstudio.review.model import Performer, QueueItem, Scene, Selection, Sitting
@@ -73,6 +74,8 @@ class DocumentState:
         the replacement offered.
     manner
         How files are read.
+    comparison
+        What is compared beside the review.
     path
         The session file, or None while unsaved.
     dirty
@@ -96,6 +99,7 @@ class DocumentState:
     choices: Mapping[str, int | None] = field(default_factory=_empty)
     proposals: Mapping[str, Proposal] = field(default_factory=_empty)
     manner: Manner = AS_THEY_ARE
+    comparison: KeptComparison = field(default_factory=KeptComparison)
     path: Path | None = None
     dirty: bool = False
     can_undo: str | None = None

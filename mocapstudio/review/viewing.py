@@ -11,6 +11,7 @@ from mocapstudio.cleaning.model import Proposal
 from mocapstudio.cleaning.parameters import DetectionParameters
 from mocapstudio.motion.take import Take
 from mocapstudio.review import walk
+from mocapstudio.review.comparing_kept import KeptComparison
 from mocapstudio.review.core import Core
 from mocapstudio.review.manner import Manner
 from mocapstudio.review.model import Performer, Scene, Selection
@@ -212,6 +213,10 @@ class Viewing(Core):
     def set_manner(self, manner: Manner) -> None:
         """Set how files are read from now on; takes that are open stay as they were read."""
         self._put(manner=manner)
+
+    def keep_comparison(self, comparison: KeptComparison) -> None:
+        """Keep another comparison beside the review."""
+        self._put(comparison=comparison)
 
     def begin_analysis(self, performer: str) -> int:
         """Return the generation of a new analysis; earlier ones of that performer are stale."""

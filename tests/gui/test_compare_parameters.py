@@ -61,3 +61,28 @@ def test_cancelling_leaves_a_word_and_a_way_back(hands, compare):
     hands.press("K")
     hands.click("button-compare-again")
     hands.see(lambda: state().linked is not None, 60)
+
+
+def test_a_comparison_is_saved_with_the_session_and_opened_again(hands, compare, tmp_path):
+    state = lambda: compare.bridge.state  # noqa: E731
+    compare.bridge.sitting.add_segment(20, 70, "step")
+    compare.bridge.sitting.set_parameters(replace(state().parameters, true_speed=True))
+    hands.see(lambda: state().linked is not None, 60)
+    hands.press("S", CTRL)
+    path = tmp_path / "one.mocapstudio"
+    hands.answer_file_dialog(path)
+    hands.see(path.is_file)
+    assert not hands.window.bridge.state.dirty
+    compare.bridge.sitting.go(33)
+    compare.bridge.sitting.rename_segment(0, "stride")
+    assert hands.window.bridge.state.dirty
+    hands.press("S", CTRL)
+    hands.see(lambda: not hands.window.bridge.state.dirty)
+    hands.window.files.begin_anew()
+    hands.see(lambda: state().reference is None)
+    hands.window.files.open_paths([path])
+    hands.see(lambda: state().linked is not None, 60)
+    assert [one.name for one in state().segments] == ["stride"]
+    assert state().parameters.true_speed
+    assert state().frame == 33
+    assert not hands.window.bridge.state.dirty

@@ -125,7 +125,13 @@ class Answering(QObject):
     def _scene(self) -> list[Recording]:
         state = self._window.bridge.state
         performers = sorted(state.scene.performers, key=lambda one: one.id != state.active)
-        return [self._window.bridge.document.result(one.id) for one in performers]
+        edited = {one.performer for one in state.sitting.edits if not one.muted}
+        found = [self._window.bridge.document.result(one.id) for one in performers]
+        # What was repaired is no longer what its file holds.
+        return [
+            replace(take, source=None) if one.id in edited else take
+            for one, take in zip(performers, found, strict=True)
+        ]
 
     def _step_source(self, by: int) -> None:
         ranking = [one.id for one in self._bridge.state.ranking]

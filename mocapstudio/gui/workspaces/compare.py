@@ -16,6 +16,7 @@ from mocapstudio.gui.compare.bridge import CompareBridge, CompareUi
 from mocapstudio.gui.compare.desk import CompareDesk
 from mocapstudio.gui.compare.empty import EmptyCompare
 from mocapstudio.gui.compare.flagging import Flagging
+from mocapstudio.gui.compare.keeping import Keeping
 from mocapstudio.gui.compare.inviting import Inviting
 from mocapstudio.gui.compare.live_answering import LiveAnswering
 from mocapstudio.gui.compare.live_bridge import LiveBridge, LiveShown
@@ -53,8 +54,13 @@ class CompareWorkspace(Workspace):
         flagging = Flagging(window.bridge, window.jobs, window.messages, self)
         self.working = Working(self.bridge, flagging, window.jobs, window.messages, self)
         self.playback = ComparePlayback(self.bridge, self)
-        self.live = LiveBridge(self)
-        self.live_mode = LiveMode(self.bridge, self.live, window.jobs, window.messages, self)
+        self._document = window.bridge
+        keeping = Keeping(self.bridge, window.bridge, self)
+        window.files.handing_over.about_to_save.connect(keeping.keep)
+        self.live: LiveBridge = LiveBridge(self)
+        self.live_mode: LiveMode = LiveMode(
+            self.bridge, self.live, window.jobs, window.messages, self
+        )
         self.desk = CompareDesk(self.bridge, self.live, window.actions_)
         self.empty = EmptyCompare(window.actions_)
         self.answering = Answering(window, self)
@@ -113,7 +119,8 @@ class CompareWorkspace(Workspace):
     def hold_back(self, close: Callable[[], object]) -> bool:
         """Ask before segments that stand in no file are lost."""
         state = self.bridge.state
-        if not (state.unsaved and state.segments):
+        in_session = self._document.state.path is not None
+        if in_session or not (state.unsaved and state.segments):
             return False
         words = "The segments drawn in the Compare workspace stand in no file and would be lost."
         confirm(self, "Close without saving the segments?", words, "Close", close)
