@@ -7,6 +7,7 @@ exchanged are exchanged once more. See the package `repair`.
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
@@ -63,7 +64,7 @@ def propose(
             proposal = propose_heading(analysis, flag, take)
         else:
             proposal = propose_joints(analysis, flag, take, donor)
-    return _measured(take, proposal)
+    return measured(take, proposal)
 
 
 def apply(take: Take, proposal: Proposal) -> Take:
@@ -79,10 +80,18 @@ def apply(take: Take, proposal: Proposal) -> Take:
     return take.with_motion(rotations, translations)
 
 
-def _measured(take: Take, proposal: Proposal) -> Proposal:
-    """Add how far hands, feet and head outside the joints move."""
+def measured(take: Take, proposal: Proposal, own: Collection[str] | None = None) -> Proposal:
+    """Add how far hands, feet and head outside the joints move.
+
+    Parameters
+    ----------
+    take
+        What the proposal is put over.
+    own
+        Names of the joints that are repaired, where the proposal bends others besides.
+    """
     skeleton = take.skeleton
-    changed = {skeleton.index[name] for name in proposal.joints}
+    changed = {skeleton.index[name] for name in (proposal.joints if own is None else own)}
     inner = topology(skeleton).details
     ends = [
         limb.joints[-1] if not set(limb.joints) & inner else _last_outside(limb.joints, inner)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from PySide6.QtCore import QObject, Qt
 from PySide6.QtGui import QAction, QKeySequence
-from PySide6.QtWidgets import QMenu, QMenuBar, QPushButton, QToolButton, QWidget
+from PySide6.QtWidgets import QCheckBox, QMenu, QMenuBar, QPushButton, QToolButton, QWidget
 
 from mocapstudio.gui import icons
 from mocapstudio.gui.allowed import GENERAL, allowed, checked
@@ -89,6 +89,23 @@ class Actions(QObject):
         action.changed.connect(follow)
         follow()
         return button
+
+    def check_box(self, name: str, text: str) -> QCheckBox:
+        """Make a check box for a switch, its key behind the text."""
+        action = self._actions[name]
+        box = QCheckBox(f"{text}  ({action.shortcut().toString()})")
+        box.setObjectName(f"check-{name}")
+        box.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        box.clicked.connect(action.trigger)
+
+        def follow() -> None:
+            box.setEnabled(action.isEnabled())
+            box.setChecked(action.isChecked())
+            box.setToolTip(action.toolTip())
+
+        action.changed.connect(follow)
+        follow()
+        return box
 
     def recolour(self) -> None:
         """Draw the icons in the colours of the theme in force."""

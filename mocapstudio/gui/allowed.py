@@ -52,6 +52,8 @@ def checked(state: DocumentState, ui: UiState) -> dict[str, bool]:
         "paper": state.mode == "paper",
         "loop": ui.loop,
         "ghosts": ui.ghosts,
+        "onion": ui.onion,
+        "keep-ends": state.keep_ends,
         "follow": ui.follow,
         "trails": ui.trails,
         "theme": ui.theme == "light",

@@ -17,6 +17,7 @@ from mocapstudio.review.model import Verdict
 
 if TYPE_CHECKING:
     from mocapstudio.cleaning.analysis import Analysis
+    from mocapstudio.cleaning.contacts.keeping import Kept
 
 _AT_ONCE = 3
 """So many missing proposals are made while the user waits; more go into the background."""
@@ -97,7 +98,7 @@ class Deciding(QObject):
 
         self._jobs.start(
             f"Preparing {len(missing)} repairs",
-            _proposing(analysis, missing),
+            _proposing(analysis, missing, document.kept(state.active)),
             done,
             lambda error: self._messages.complain(error, "The flags could not be accepted"),
             key="accept",
@@ -194,12 +195,12 @@ class Deciding(QObject):
 
 
 def _proposing(
-    analysis: Analysis, flags: Sequence[Flag]
+    analysis: Analysis, flags: Sequence[Flag], kept: Kept
 ) -> Generator[Progress, None, list[tuple[str, Proposal]]]:
-    from mocapstudio.cleaning.proposals import propose
+    from mocapstudio.cleaning.contacts.keeping import propose_keeping
 
     made = []
     for done, flag in enumerate(flags):
         yield Progress(done / len(flags), f"repair of {flag.joint}")
-        made.append((flag.id, propose(analysis, flag)))
+        made.append((flag.id, propose_keeping(analysis, flag, kept=kept)))
     return made

@@ -32,6 +32,8 @@ class UiState:
         Share of real time at which the take plays: 0.25, 0.5 or 1.
     trails
         Whether end effectors of the selection leave trails.
+    onion
+        Whether the selected limb, or the body, is also shown some frames before and after.
     learning
         Whether the first map is refined by what is learnt from the context.
     analysing
@@ -52,6 +54,7 @@ class UiState:
     loop: bool = False
     speed: float = 1.0
     trails: bool = True
+    onion: bool = False
     learning: bool = True
     analysing: bool = False
     distances: bool = False

@@ -18,6 +18,7 @@ from mocapstudio.review.state import DocumentState
 
 if TYPE_CHECKING:
     from mocapstudio.cleaning.analysis import Analysis
+    from mocapstudio.cleaning.contacts.keeping import Kept
     from mocapstudio.cleaning.distance_profile import DistanceProfile
 
 _KEY = "reasons"
@@ -87,7 +88,7 @@ class Reasons(QObject):
         state, choice = self._bridge.state, self._bridge.ui.preview
         item, analysis = state.selected, state.analysis
         flag = None if item is None else item.flag
-        asked = (flag, analysis, choice)
+        asked = (flag, analysis, choice, state.keep_ends, state.sitting.contacts)
         if asked == self._asked:
             return
         same_flag = self._asked[:2] == asked[:2]
@@ -101,7 +102,7 @@ class Reasons(QObject):
             return
         self._jobs.start(
             f"Proposal for {flag.joint}",
-            _work(analysis, flag, choice),
+            _work(analysis, flag, choice, self._bridge.document.kept(state.active)),
             lambda found: self._found(asked, found),
             lambda error: self._failed(asked, error),
             key=_KEY,
@@ -110,7 +111,7 @@ class Reasons(QObject):
     def _found(self, asked: tuple[object, ...], found: tuple[Reason, Proposal]) -> None:
         if asked != self._asked:
             return
-        flag, _, choice = asked
+        flag, _, choice, *_ = asked
         reason, proposal = found
         self._set(reason)
         assert isinstance(flag, Flag)
@@ -128,12 +129,13 @@ class Reasons(QObject):
 
 
 def _work(
-    analysis: Analysis, flag: Flag, choice: int | None
+    analysis: Analysis, flag: Flag, choice: int | None, kept: Kept
 ) -> Generator[Progress, None, tuple[Reason, Proposal]]:
-    from mocapstudio.cleaning import distance_profile, proposals, reasons
+    from mocapstudio.cleaning import distance_profile, reasons
+    from mocapstudio.cleaning.contacts.keeping import propose_keeping
 
     yield Progress(0.0, "looking for neighbours")
     profile = yield from scaled(distance_profile.measuring(analysis, flag), 0.0, 0.6)
     neighbours = reasons.neighbours(analysis, flag)
     yield Progress(0.6, "making the proposal")
-    return Reason(neighbours, profile), proposals.propose(analysis, flag, choice)
+    return Reason(neighbours, profile), propose_keeping(analysis, flag, choice, kept=kept)

@@ -71,6 +71,7 @@ def _wire_decisions(window: MainWindow) -> None:
     for name in ("accept", "reject", "defer", "reopen", "protect", "unprotect", "edit"):
         on(name, getattr(deciding, name))
     on("reject-like", deciding.reject_like)
+    on("keep-ends", lambda: bridge.document.set_keep_ends(not bridge.state.keep_ends))
     on("trim-in", partial(deciding.trim, start=True))
     on("trim-out", partial(deciding.trim, start=False))
     on("trim-clear", deciding.clear_trim)
@@ -106,6 +107,7 @@ def _wire_view(window: MainWindow) -> None:
     on, bridge, workspace = window.actions_.on, window.bridge, window.workspace
     on("ghosts", lambda: bridge.set_ui(ghosts=not bridge.ui.ghosts))
     on("follow", lambda: bridge.set_ui(follow=not bridge.ui.follow))
+    on("onion", lambda: bridge.set_ui(onion=not bridge.ui.onion))
     on("trails", lambda: bridge.set_ui(trails=not bridge.ui.trails))
     on("frame-joint", workspace.frame_joint)
     on("zoom-flag", workspace.zoom_to_flag)

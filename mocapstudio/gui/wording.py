@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from mocapstudio.cleaning.contacts.model import ENDS_KEPT, ON_CONTACTS
 from mocapstudio.cleaning.model import DigressionMap, Flag, Kind, Neighbour
 from mocapstudio.formats import Recording
 from mocapstudio.motion.facing import ROOT_POSITION
@@ -93,8 +94,11 @@ def method(name: str) -> str:
         "interpolation": "interpolated across the span",
         "turned back": "turned back by the angle of the flip",
         "swap": "left and right swapped back",
+        ENDS_KEPT: "hands and feet kept where they were",
+        ON_CONTACTS: "brought to what it touches",
+        "contacts": "bent to meet contacts",
     }
-    return words.get(name, name)
+    return "; ".join(words.get(one, one) for one in name.split(", "))
 
 
 def time_left(left: float | None) -> str:

@@ -73,6 +73,10 @@ class Analyses:
             {**self.proposals(performer), flag_id: proposal}
         )
 
+    def withdraw(self) -> None:
+        """Let go of all proposals, since they would be made otherwise by now; choices stay."""
+        self._proposals = {}
+
     def restore(
         self, performer: str, flags: Iterable[Flag], choices: Mapping[str, int | None]
     ) -> None:

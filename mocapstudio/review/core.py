@@ -10,6 +10,7 @@ from dataclasses import replace
 from datetime import UTC, datetime
 from typing import Any, cast
 
+from mocapstudio.cleaning.contacts.model import ContactPoint
 from mocapstudio.cleaning.model import Flag
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.take import Take
@@ -54,6 +55,7 @@ class Core:
         self._analyses = Analyses()
         self._sources, self._results, self._uncorrected = Results(), Results(), Results()
         self._marker_results, self._unfilled = MarkerResults(), MarkerResults()
+        self._points_of: dict[str, tuple[Take, tuple[ContactPoint, ...]]] = {}
         self._context: tuple[Take, ...] = ()
         self._queue_of: tuple[str, object, object, tuple[QueueItem, ...]] = ("", (), (), ())
         self._saved = lasting(self._state)
@@ -124,6 +126,10 @@ class Core:
     def _put(self, **changes: Any) -> None:
         """Change fields of the state, bring what follows from them up to date, tell listeners."""
         old = self._state
+        before, now = old.sitting, self._history.present
+        if before.contacts is not now.contacts or before.points is not now.points:
+            # What was proposed kept to other contacts.
+            self._analyses.withdraw()
         new = replace(
             old,
             sitting=self._history.present,

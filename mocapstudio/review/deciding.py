@@ -7,15 +7,15 @@ from dataclasses import replace
 
 from mocapstudio.cleaning.model import Flag, Proposal
 from mocapstudio.motion.errors import MocapError
-from mocapstudio.motion.take import Take
 from mocapstudio.review import decisions, protection, walk
-from mocapstudio.review.core import Core, new_id
+from mocapstudio.review.core import new_id
+from mocapstudio.review.keeping import Keeping
 from mocapstudio.review.model import Edit, Protected, QueueItem, Verdict
 from mocapstudio.review.replay import replay
 from mocapstudio.review.rows import check_rows, check_span
 
 
-class Deciding(Core):
+class Deciding(Keeping):
     """Verdicts, edits, protected spans and trims of the active performer."""
 
     def accept(self, flag_ids: str | Iterable[str], advance: bool = False) -> None:
@@ -187,15 +187,6 @@ class Deciding(Core):
         ]
         repaired = replay(self._take(performer), others)
         return self._propose(performer, flag, replace(repaired, trim=self._trim(performer)))
-
-    def _propose(self, performer: str, flag: Flag, onto: Take | None = None) -> Proposal:
-        # The engine's kernels take a while to import; a desk that only looks needs none.
-        from mocapstudio.cleaning.proposals import propose
-
-        analysis = self._analyses.latest.get(performer)
-        if analysis is None:
-            raise MocapError(f"no proposal for {flag.joint} yet: analyse the take first")
-        return propose(analysis, flag, self._state.choices.get(flag.id), onto)
 
     def _edit(self, edit_id: str) -> Edit:
         for edit in self._history.present.edits:

@@ -76,6 +76,8 @@ class DocumentState:
         How files are read.
     comparison
         What is compared beside the review.
+    keep_ends
+        Whether proposals leave hands and feet where they were.
     path
         The session file, or None while unsaved.
     dirty
@@ -100,6 +102,7 @@ class DocumentState:
     proposals: Mapping[str, Proposal] = field(default_factory=_empty)
     manner: Manner = AS_THEY_ARE
     comparison: KeptComparison = field(default_factory=KeptComparison)
+    keep_ends: bool = False
     path: Path | None = None
     dirty: bool = False
     can_undo: str | None = None

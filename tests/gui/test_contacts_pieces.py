@@ -31,7 +31,7 @@ from mocapstudio.gui.contacts.lane_gestures import (
 )
 from mocapstudio.gui.contacts.lanes import lanes_of
 from mocapstudio.gui.contacts.measuring import measured
-from mocapstudio.gui.contacts.reading import Reading, on_clock
+from mocapstudio.gui.contacts.reading import Reading
 from mocapstudio.gui.contacts.targets import (
     converted,
     drawn_target,
@@ -42,6 +42,7 @@ from mocapstudio.gui.contacts.targets import (
 )
 from mocapstudio.motion.kinematics import take_pose
 from mocapstudio.motion.take import Take
+from mocapstudio.review.beside import on_clock
 
 FRAMES = 90
 

@@ -8,6 +8,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+ENDS_KEPT, ON_CONTACTS = "ends kept", "on contacts"
+"""What the method of a proposal says further: how a repair was bent."""
+
 Point = Literal["heel", "ball", "toe", "palm"]
 
 

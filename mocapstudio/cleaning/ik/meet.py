@@ -9,9 +9,6 @@ from __future__ import annotations
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from mocapstudio.cleaning.contacts.model import Contact, ContactPoint
 from mocapstudio.cleaning.ik import windows
 from mocapstudio.cleaning.ik.apply import Departure, declared_changes, with_departures
@@ -20,12 +17,10 @@ from mocapstudio.cleaning.ik.foot_skate import SkateParameters, Unreached, unrea
 from mocapstudio.cleaning.ik.objectives.key_pose import KeyPose
 from mocapstudio.cleaning.ik.ranges import JointRanges, joint_ranges
 from mocapstudio.cleaning.ik.solve import Problem, solve
-from mocapstudio.cleaning.ik.targets import holds
+from mocapstudio.cleaning.ik.targets import Hold, holds
 from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.take import Take
-
-Array = NDArray[np.float64]
 
 _KEY = 1e3
 """Per unit of departure: the dragged frame stays as it looked, unless the contact forbids it."""
@@ -80,19 +75,43 @@ def meet(
     yield Progress(0.0, "laying out the contact")
     ranges = ranges or joint_ranges([take])
     (hold,) = holds(take, [contact], points, others or {})
-    easing = SkateParameters().easing
-    ((start, end),) = windows.cut(take, [hold], easing)
-    unknowns: Array | None = None
+    ((start, end),) = windows.cut(take, [hold], SkateParameters().easing)
+    yield Progress(0.1, "solving")
+    departure = bend(take, [hold], (start, end), ranges, kept)
+    bent = with_departures(take, [departure])
+    yield Progress(1.0, "measuring")
+    return Met(bent, declared_changes(take, [departure]), tuple(unreached(bent, [hold])))
+
+
+def bend(
+    take: Take,
+    laid: Sequence[Hold],
+    span: tuple[int, int],
+    ranges: JointRanges,
+    kept: KeptFrame | None = None,
+) -> Departure:
+    """Bend the limbs of contacts within a window; the hips stay.
+
+    Parameters
+    ----------
+    take
+        F frames.
+    laid
+        Contacts inside the window, as `targets.holds` returns them.
+    span
+        The window: half-open, with room to ease around the contacts (`windows.cut`).
+    ranges
+        How far joints turn.
+    kept
+        As for `meet`.
+    """
+    easing, unknowns = SkateParameters().easing, None
     for weight in windows.CONTACT_WEIGHTS:
-        yield Progress(0.1 if unknowns is None else 0.5, "solving")
-        wanted = windows.problem(take, [hold], (start, end), ranges, easing, 0.0, weight)
-        if kept is not None and start <= kept.frame < end:
-            key = KeyPose(kept.frame - start, kept.departure, _KEY)
+        wanted = windows.problem(take, laid, span, ranges, easing, 0.0, weight)
+        if kept is not None and span[0] <= kept.frame < span[1]:
+            key = KeyPose(kept.frame - span[0], kept.departure, _KEY)
             wishes = [*wanted.objectives, key]
             wanted = Problem(wanted.window, wanted.freedom, wishes, wanted.over_time)
         found = solve(wanted, unknowns, tolerance=windows.TOLERANCE, smallest=windows.SMALLEST)
         unknowns = found.unknowns
-    departure = Departure((start, end), wanted, found.unknowns)
-    bent = with_departures(take, [departure])
-    yield Progress(1.0, "measuring")
-    return Met(bent, declared_changes(take, [departure]), tuple(unreached(bent, [hold])))
+    return Departure(span, wanted, found.unknowns)

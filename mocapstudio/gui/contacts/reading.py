@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,7 @@ from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.kinematics import take_pose
 from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.take import Take
+from mocapstudio.review.beside import on_clock
 from mocapstudio.review.state import DocumentState
 
 Array = NDArray[np.float64]
@@ -226,27 +227,3 @@ def _read(
 
 def _alike(a: tuple[ContactPoint, ...], b: tuple[ContactPoint, ...]) -> bool:
     return len(a) == len(b) and all(x is y for x, y in zip(a, b, strict=True))
-
-
-def on_clock(take: Take, offset: float, other: Take, other_offset: float) -> Take:
-    """Return another performer's take frame by frame as it is beside `take`.
-
-    Before it begins and after it ends it stands still.
-
-    Parameters
-    ----------
-    offset, other_offset
-        Seconds by which each starts after the scene's zero.
-    """
-    if take.frames == other.frames and take.rate == other.rate and offset == other_offset:
-        return other
-    shift = (offset - other_offset) * float(other.rate)
-    steps = np.arange(take.frames) * float(other.rate / take.rate)
-    at = np.clip(np.floor(shift + steps + 0.5).astype(int), 0, other.frames - 1)
-    return replace(
-        other,
-        rotations=np.ascontiguousarray(other.rotations[at]),
-        translations=np.ascontiguousarray(other.translations[at]),
-        rate=take.rate,
-        trim=None,
-    )

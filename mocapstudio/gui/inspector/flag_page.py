@@ -93,6 +93,7 @@ class FlagPage(QWidget):
         column.addWidget(self._neighbours)
         column.addWidget(label("FACTS", "section"))
         column.addLayout(self._make_facts())
+        column.addWidget(actions.check_box("keep-ends", "Keep hands and feet"))
         column.addStretch(1)
         scroll = QScrollArea()
         scroll.setObjectName("inspector-scroll")

@@ -57,7 +57,8 @@ def method(theme: Theme, name: str) -> QColor:
         "interpolation": theme.neighbour,
         "swap": theme.deferred,
     }
-    return QColor(known.get(name, theme.result))
+    # What was bent besides stands after it.
+    return QColor(known.get(name.split(", ")[0], theme.result))
 
 
 def faded(colour: QColor | str, alpha: float) -> QColor:
