@@ -89,7 +89,7 @@ def clean(
                 export(document, performer, target)
                 done.append(changes.as_json(path, target, document.state.sitting.edits))
     write_json({"takes": done}, json_path)
-    raise typer.Exit(work.exit_code)
+    raise typer.Exit(work.finish())
 
 
 def repaired(

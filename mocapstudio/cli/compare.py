@@ -87,7 +87,7 @@ def compare(
 
         show([(one.comparison, one.carried) for one in job.done])
     write_json(job.as_json(), json_path)
-    raise typer.Exit(work.exit_code)
+    raise typer.Exit(work.finish())
 
 
 def _check_figure(path: Path | None) -> None:

@@ -64,7 +64,7 @@ def detect(
                 if json_path is None:
                     _show(analysis, path)
     write_json({"takes": found}, json_path)
-    raise typer.Exit(work.exit_code)
+    raise typer.Exit(work.finish())
 
 
 def as_json(analysis: Analysis, path: Path) -> dict[str, Any]:

@@ -43,7 +43,7 @@ def inspect(
             if json_path is None:
                 _show(takes, report)
     write_json({"files": found}, json_path)
-    raise typer.Exit(work.exit_code)
+    raise typer.Exit(work.finish())
 
 
 def as_json(takes: Sequence[Recording], report: ImportReport) -> dict[str, Any]:

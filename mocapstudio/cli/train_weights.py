@@ -82,7 +82,7 @@ def train_weights(
     choices = {"folds": folds, "iterations": iterations, "seed": seed}
     result = _learnt(own[0], others, choices, paper=paper)
     _finish(result, choices | {"paper": paper}, [path for path, _ in found], out, json_path)
-    raise typer.Exit(work.exit_code)
+    raise typer.Exit(work.finish())
 
 
 def _labelled(

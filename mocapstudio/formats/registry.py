@@ -24,7 +24,7 @@ from mocapstudio.formats.table_write import write_marker_table, write_table
 from mocapstudio.formats.trc_read import looks_like_trc, read_trc
 from mocapstudio.formats.trc_write import write_trc
 from mocapstudio.motion.declared import Declared
-from mocapstudio.motion.errors import FileError
+from mocapstudio.motion.errors import FileError, MarkersOnlyError
 from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.motion.take import Take
 
@@ -165,12 +165,15 @@ def read(path: Path | str, options: ReadOptions | None = None) -> tuple[list[Tak
     Raises
     ------
     FileError
-        As `read_any`, and if the file holds markers only.
+        As `read_any`.
+    MarkersOnlyError
+        If the file holds markers only.
     """
     found, report = read_any(path, options)
     takes = [take for take in found if isinstance(take, Take)]
     if not takes:
-        raise FileError(Path(path), "holds markers and no skeleton; solve it to a skeleton first")
+        cause = "holds markers and no skeleton; solve it to a skeleton first"
+        raise MarkersOnlyError(Path(path), cause)
     return takes, report
 
 

@@ -56,6 +56,10 @@ class NoRateError(FileError):
     """A file that states no frame rate and leaves nothing to tell it by: the user is asked."""
 
 
+class MarkersOnlyError(FileError):
+    """A file of markers where joints are wanted: it has to be solved to a skeleton first."""
+
+
 class SkeletonMismatchError(MocapError):
     """Two takes whose joints cannot be matched by name."""
 

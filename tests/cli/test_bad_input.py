@@ -186,3 +186,38 @@ def test_bad_joint_map(mocapstudio, broken: Path, tmp_path: Path, text: str) -> 
     done = mocapstudio("detect", broken, "--context", broken, "--joint-map", names)
     assert done.returncode == 2
     told(done.stderr, names)
+
+
+MARKERS = "Frame,LFHD X,LFHD Y,LFHD Z,RTOE X,RTOE Y,RTOE Z\n" + "".join(
+    f"{frame},0.1,1.7,0.{frame},0.1,0.1,0.{frame}\n" for frame in range(1, 9)
+)
+
+
+def test_markers_in_a_folder_of_takes_are_left_out(mocapstudio, figure, tmp_path: Path) -> None:
+    folder = tmp_path / "takes"
+    folder.mkdir()
+    take = figure(seconds=2.0).write(folder / "joints.bvh")
+    markers = folder / "markers.csv"
+    markers.write_text(MARKERS)
+    words = ("--fps", 100, "--json", "-")
+    done = mocapstudio("detect", folder, *words)
+    assert done.returncode == 0
+    assert [one["path"] for one in json.loads(done.stdout)["takes"]] == [str(take)]
+    assert f"warning: {markers}: -: left out: it holds markers" in done.stderr
+    assert "error:" not in done.stderr
+    # By name it is bad input, also beside its folder.
+    done = mocapstudio("detect", folder, markers, *words)
+    assert done.returncode == 2
+    assert [one["path"] for one in json.loads(done.stdout)["takes"]] == [str(take)]
+    assert f"error: {markers}: -: holds markers" in done.stderr
+
+
+def test_a_folder_of_nothing_but_markers_is_bad_input(mocapstudio, figure, tmp_path: Path) -> None:
+    folder = tmp_path / "takes"
+    folder.mkdir()
+    (folder / "markers.csv").write_text(MARKERS)
+    context = figure(seconds=2.0).write(tmp_path / "joints.bvh")
+    done = mocapstudio("detect", folder, "--context", context, "--fps", 100, "--json", "-")
+    assert done.returncode == 2
+    assert json.loads(done.stdout)["takes"] == []
+    assert f"error: {folder / 'markers.csv'}: -: holds markers" in done.stderr
