@@ -47,6 +47,22 @@ def cheapest(
     return float(m[-1].min() if end == "source" else m[-1, -1])
 
 
+def path(costs: np.ndarray, begin: str | None = None, end: str | None = None) -> list[list[int]]:
+    """Return the cheapest path; a diagonal step wins a tie, then one in the reference."""
+    m = accumulated(costs, begin == "reference", begin == "source")
+    i, j = costs.shape[0] - 1, costs.shape[1] - 1
+    if end == "reference":
+        i = int(np.argmin(m[:, -1]))
+    elif end == "source":
+        j = int(np.argmin(m[-1]))
+    found = [[i, j]]
+    while not ((i == 0 and (j == 0 or begin == "source")) or (j == 0 and begin == "reference")):
+        steps = [(i - 1, j - 1), (i - 1, j), (i, j - 1)]
+        i, j = min((s for s in steps if min(s) >= 0), key=lambda step: m[step])
+        found.append([i, j])
+    return found[::-1]
+
+
 def paths(rows: int, columns: int) -> Iterator[list[tuple[int, int]]]:
     """Every path from the first cell to the last, in steps of (1, 1), (1, 0) and (0, 1)."""
 

@@ -23,8 +23,8 @@ from mocapstudio.similarity.alignment.frugal import aligning_frugally
 
 Array = NDArray[np.float64]
 
-_MOST_CELLS = 64_000_000
-"""Pairs of frames whose accumulated distances are kept at once: 256 MB."""
+_MOST_CELLS = 1_000_000_000
+"""Pairs of frames whose steps are kept at once: 250 MB."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,8 +10,9 @@ import contextlib
 import os
 import sys
 import threading
+from collections import deque
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 
 _lock = threading.Lock()
 _pool: ThreadPoolExecutor | None = None
@@ -64,3 +65,34 @@ def for_blocks(rows: int, work: Callable[[int, int], None], at_least: int = 16) 
     for failure in failures:
         if failure is not None:
             raise failure
+
+
+def ahead(count: int, work: Callable[[int], None], slots: int) -> Iterator[int]:
+    """Run ``work(0)`` to ``work(count - 1)``, and yield each number in order when it is done.
+
+    While the caller goes on with number k, those up to ``k + slots - 1`` are worked on, so that a
+    result may be kept in one of `slots` places in turn. Nothing runs any more when this ends, be
+    it before its time.
+
+    Raises
+    ------
+    Exception
+        What `work` raised, in place of its number.
+    """
+    if count == 1:
+        work(0)
+        yield 0
+        return
+    pending: deque[Future[None]] = deque()
+    submitted = 0
+    try:
+        for k in range(count):
+            while submitted < min(count, k + slots):
+                pending.append(_shared_pool().submit(work, submitted))
+                submitted += 1
+            pending.popleft().result()
+            yield k
+    finally:
+        for future in pending:
+            future.cancel()
+        wait(pending)

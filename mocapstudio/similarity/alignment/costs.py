@@ -25,7 +25,10 @@ class Costs(Protocol):
         """Frames of the reference and of the source."""
 
     def fill(self, start: int, end: int, out: F32) -> None:
-        """Write the costs of reference frames [start, end) with all source frames into `out`."""
+        """Write the costs of reference frames [start, end) with all source frames into `out`.
+
+        Several threads may do so at once, each into an `out` of its own.
+        """
 
     def fill_within(self, low: NDArray[np.int32], out: F32) -> None:
         """Write the costs of a band (R, W) whose rows begin at the source frames `low` (R,)."""
@@ -53,8 +56,9 @@ class PoseDistances:
 
     def __init__(self, reference: F32, source: F32) -> None:
         _check(reference, source)
-        self.reference, self.source = _even(reference), _even(source)
-        self._chunks = _chunked(self.source)
+        self.reference, self.source = (np.asarray(p, np.float32) for p in (reference, source))
+        self._rows = _padded(self.reference)
+        self._chunks = _chunked(self.source, self._rows.shape[1])
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -63,12 +67,7 @@ class PoseDistances:
 
     def fill(self, start: int, end: int, out: F32) -> None:
         """Write the costs of reference frames [start, end) into `out` (end - start, S)."""
-        rows = self.reference[start:end]
-
-        def work(first: int, last: int) -> None:
-            kernels.distances(rows[first:last], self._chunks, out[first:last])
-
-        parallel.for_blocks(len(rows), work, _AT_LEAST)
+        kernels.distances(self._rows[start:end], self._chunks, out)
 
     def fill_within(self, low: NDArray[np.int32], out: F32) -> None:
         """Write the costs of a band (R, W) whose rows begin at the source frames `low` (R,)."""
@@ -76,7 +75,7 @@ class PoseDistances:
 
         def work(first: int, last: int) -> None:
             rows = slice(first, last)
-            kernels.distances_within(self.reference[rows], columns, low[rows], out[rows])
+            kernels.distances_within(self._rows[rows], columns, low[rows], out[rows])
 
         parallel.for_blocks(len(self.reference), work, _AT_LEAST)
 
@@ -222,16 +221,17 @@ def _check(reference: NDArray[np.floating], source: NDArray[np.floating]) -> Non
         raise ParameterError("poses of different dimension cannot be aligned")
 
 
-def _even(poses: F32) -> F32:
-    """Pad poses (F, D) with a zero to the even dimension that the kernels take."""
-    poses = np.asarray(poses, np.float32)
-    odd = poses.shape[1] % 2
-    return np.ascontiguousarray(np.pad(poses, ((0, 0), (0, odd))) if odd else poses)
+def _padded(poses: F32) -> F32:
+    """Pad poses (F, D) with zeros to a multiple of the dimensions that the kernels take."""
+    more = -poses.shape[1] % kernels.DIMENSIONS
+    return np.ascontiguousarray(np.pad(poses, ((0, 0), (0, more))) if more else poses)
 
 
-def _chunked(poses: F32) -> F32:
-    """(chunks, D, CHUNK) copy of poses (F, D), time last, filled up with the last pose."""
-    frames = np.arange(-(-len(poses) // kernels.CHUNK) * kernels.CHUNK)
-    whole = poses[np.minimum(frames, len(poses) - 1)]
-    chunks = whole.reshape(-1, kernels.CHUNK, poses.shape[1])
-    return np.ascontiguousarray(chunks.transpose(0, 2, 1))
+def _chunked(poses: F32, dimensions: int) -> F32:
+    """(chunks, dimensions, CHUNK) copy of poses (F, D), time last, filled up with zeros."""
+    size = kernels.CHUNK
+    chunks = np.zeros((-(-len(poses) // size), dimensions, size), np.float32)
+    for chunk, start in zip(chunks, range(0, len(poses), size), strict=True):
+        part = poses[start : start + size]
+        chunk[: part.shape[1], : len(part)] = part.T
+    return chunks

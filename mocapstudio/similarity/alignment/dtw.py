@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mocapstudio.motion.errors import ParameterError
 from mocapstudio.motion.progress import Progress, run
+from mocapstudio.similarity import parallel
 from mocapstudio.similarity.alignment import kernels
 from mocapstudio.similarity.alignment.costs import Costs
 
@@ -19,7 +20,11 @@ Path = NDArray[np.int32]
 
 Side = Literal["reference", "source"]
 
-_BLOCK = 512
+_CELLS = 700_000
+_ROWS = 256
+_SLOTS = 3
+"""Pairs whose distances are computed at a time, at most how many rows they are, and how many times
+that is kept: few enough for the cache, and enough to keep the processors busy."""
 
 
 @dataclass(frozen=True)
@@ -75,28 +80,72 @@ class Alignment:
 
 
 def align(costs: Costs, ends: Ends = CLOSED) -> Alignment:
-    """Find the cheapest path; memory grows with the product of the lengths."""
+    """Find the cheapest path; memory grows with the product of the lengths: two bits a pair."""
     return run(aligning(costs, ends))
 
 
 def aligning(costs: Costs, ends: Ends = CLOSED) -> Generator[Progress, None, Alignment]:
-    """Do as `align` and yield progress."""
-    accumulated = yield from accumulating(costs, ends)
-    path = traced(accumulated, ends)
+    """Do as `align` and yield progress.
+
+    Of the accumulated distance matrix M only the steps between its cells are kept, two bits each.
+    """
+    rows, columns = costs.shape
+    steps = np.zeros((-(-rows // 4), columns), np.uint8)
+    bottom, right = np.empty(columns, np.float32), np.empty(rows, np.float32)
+    for block in accumulated(costs, ends):
+        yield Progress(block.start / rows, "aligning")
+        end = block.start + len(block.m)
+        into = steps[block.start // 4 : -(-end // 4)]
+        kernels.steps(block.m, block.above, block.corner, block.edge, into)
+        right[block.start : end] = block.m[:, -1]
+        bottom[:] = block.m[-1]
+    path = np.empty((rows + columns, 2), np.int32)
+    first = kernels.trace(steps, *last_cell(bottom, right, ends), *ends.free, path)
+    path = path[first:].copy()
     return Alignment(path, costs.pairs(path))
 
 
-def accumulating(costs: Costs, ends: Ends = CLOSED) -> Generator[Progress, None, F32]:
-    """Compute the accumulated distance matrix M (R, S) of algorithm 1, yielding progress."""
-    m = np.empty(costs.shape, np.float32)
-    corner, above, edge = borders(costs.shape[1], ends)
-    for start in range(0, len(m), _BLOCK):
-        yield Progress(start / len(m), "aligning")
-        block = m[start : start + _BLOCK]
-        costs.fill(start, start + len(block), block)
-        kernels.accumulate(block, above, corner, edge)
-        above, corner = block[-1], edge
-    return m
+class Block(NamedTuple):
+    """Some rows of the accumulated distance matrix, valid until the next ones are asked for.
+
+    Parameters
+    ----------
+    start
+        The first of its n rows.
+    m
+        (n, S) accumulated distances.
+    above, corner, edge
+        (S,) the row before, what stands left of that, and left of the block's own rows.
+    """
+
+    start: int
+    m: F32
+    above: F32
+    corner: float
+    edge: float
+
+
+def accumulated(costs: Costs, ends: Ends = CLOSED) -> Iterator[Block]:
+    """Compute the accumulated distance matrix M (R, S) of algorithm 1, some rows at a time.
+
+    The distances of the next rows are computed meanwhile, and all stays in the cache.
+    """
+    rows, columns = costs.shape
+    corner, above, edge = borders(columns, ends)
+    size = max(min(_CELLS // columns, _ROWS) // 4, 1) * 4
+    slots = np.empty((min(_SLOTS, -(-rows // size)), min(size, rows), columns), np.float32)
+
+    def block(k: int) -> F32:
+        return slots[k % len(slots), : min(size, rows - k * size)]
+
+    def work(k: int) -> None:
+        costs.fill(k * size, min(rows, (k + 1) * size), block(k))
+
+    for k in parallel.ahead(-(-rows // size), work, len(slots)):
+        m = block(k)
+        kernels.accumulate(m, above, corner, edge)
+        yield Block(k * size, m, above, corner, edge)
+        above, corner = m[-1].copy(), edge
 
 
 def borders(columns: int, ends: Ends) -> tuple[float, F32, float]:
@@ -115,15 +164,6 @@ def last_cell(last_row: F32, last_column: F32, ends: Ends) -> tuple[int, int]:
     if ends.end == "reference":
         return int(np.argmin(last_column)), column
     return row, int(np.argmin(last_row)) if ends.end == "source" else column
-
-
-def traced(accumulated: F32, ends: Ends = CLOSED) -> Path:
-    """(P, 2) cheapest path through an accumulated distance matrix (R, S)."""
-    end = last_cell(accumulated[-1], accumulated[:, -1], ends)
-    path = np.empty((sum(accumulated.shape), 2), np.int32)
-    no_band = np.zeros(len(accumulated), np.int32)
-    first = kernels.backtrack(accumulated, no_band, *end, *ends.free, path)
-    return path[first:].copy()
 
 
 def align_in_band(costs: Costs, band: int, ends: Ends = CLOSED) -> Alignment:

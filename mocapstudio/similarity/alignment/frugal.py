@@ -13,24 +13,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapstudio.motion.progress import Progress, run
-from mocapstudio.similarity.alignment import kernels
 from mocapstudio.similarity.alignment.costs import Costs
 from mocapstudio.similarity.alignment.dtw import (
     CLOSED,
     Alignment,
     Ends,
     Path,
+    accumulated,
     aligning,
-    borders,
     last_cell,
 )
 
 F32 = NDArray[np.float32]
 
 CELLS = 4_000_000
-"""Pairs that are aligned at once: 16 MB."""
-
-_BLOCK = 128
+"""Pairs that are aligned at once."""
 
 
 def align_frugally(costs: Costs, ends: Ends = CLOSED, cells: int = CELLS) -> Alignment:
@@ -102,17 +99,12 @@ def _last(
 ) -> Generator[Progress, None, tuple[F32, F32]]:
     """Compute the last row (S,) and the last column (R,) of the accumulated distances."""
     rows, columns = costs.shape
-    corner, above, edge = borders(columns, ends)
-    right = np.empty(rows, np.float32)
-    block = np.empty((min(_BLOCK, rows), columns), np.float32)
-    for start in range(0, rows, _BLOCK):
-        yield Progress(done + (until - done) * start / rows, "aligning")
-        part = block[: min(_BLOCK, rows - start)]
-        costs.fill(start, start + len(part), part)
-        kernels.accumulate(part, above, corner, edge)
-        right[start : start + len(part)] = part[:, -1]
-        above, corner = part[-1].copy(), edge
-    return above, right
+    bottom, right = np.empty(columns, np.float32), np.empty(rows, np.float32)
+    for block in accumulated(costs, ends):
+        yield Progress(done + (until - done) * block.start / rows, "aligning")
+        right[block.start : block.start + len(block.m)] = block.m[:, -1]
+        bottom[:] = block.m[-1]
+    return bottom, right
 
 
 def _quietly(

@@ -12,9 +12,15 @@ from numpy.typing import NDArray
 
 F32 = NDArray[np.float32]
 I32 = NDArray[np.int32]
+U8 = NDArray[np.uint8]
+
+DIAGONAL, UP, LEFT = 0, 1, 2
+"""Steps of a path: from the pair before in both, in the reference alone, in the source alone."""
 
 CHUNK = 256
 """Source frames that `distances` takes at a time."""
+DIMENSIONS = 4
+"""Dimensions that it takes at a time."""
 
 _ROWS = 4
 _ZERO = np.float32(0.0)
@@ -32,7 +38,7 @@ def distances(reference: F32, source: F32, out: F32) -> None:
     Parameters
     ----------
     reference
-        (R, D); D even.
+        (R, D); D a multiple of `DIMENSIONS`.
     source
         (chunks, D, CHUNK): source frames in chunks, the last filled up with anything.
     out
@@ -46,17 +52,42 @@ def distances(reference: F32, source: F32, out: F32) -> None:
         for i in range(0, rows, _ROWS):
             i1, i2, i3 = min(i + 1, rows - 1), min(i + 2, rows - 1), min(i + 3, rows - 1)
             total[:] = _ZERO
-            for d in range(0, dims, 2):
-                a, b = reference[i, d], reference[i, d + 1]
-                a1, b1 = reference[i1, d], reference[i1, d + 1]
-                a2, b2 = reference[i2, d], reference[i2, d + 1]
-                a3, b3 = reference[i3, d], reference[i3, d + 1]
+            for d in range(0, dims, DIMENSIONS):
+                w0, x0 = reference[i, d], reference[i, d + 1]
+                y0, z0 = reference[i, d + 2], reference[i, d + 3]
+                w1, x1 = reference[i1, d], reference[i1, d + 1]
+                y1, z1 = reference[i1, d + 2], reference[i1, d + 3]
+                w2, x2 = reference[i2, d], reference[i2, d + 1]
+                y2, z2 = reference[i2, d + 2], reference[i2, d + 3]
+                w3, x3 = reference[i3, d], reference[i3, d + 1]
+                y3, z3 = reference[i3, d + 2], reference[i3, d + 3]
                 for j in range(CHUNK):
                     p, q = chunk[d, j], chunk[d + 1, j]
-                    total[0, j] += (a - p) * (a - p) + (b - q) * (b - q)
-                    total[1, j] += (a1 - p) * (a1 - p) + (b1 - q) * (b1 - q)
-                    total[2, j] += (a2 - p) * (a2 - p) + (b2 - q) * (b2 - q)
-                    total[3, j] += (a3 - p) * (a3 - p) + (b3 - q) * (b3 - q)
+                    r, s = chunk[d + 2, j], chunk[d + 3, j]
+                    total[0, j] += (
+                        (w0 - p) * (w0 - p)
+                        + (x0 - q) * (x0 - q)
+                        + (y0 - r) * (y0 - r)
+                        + (z0 - s) * (z0 - s)
+                    )
+                    total[1, j] += (
+                        (w1 - p) * (w1 - p)
+                        + (x1 - q) * (x1 - q)
+                        + (y1 - r) * (y1 - r)
+                        + (z1 - s) * (z1 - s)
+                    )
+                    total[2, j] += (
+                        (w2 - p) * (w2 - p)
+                        + (x2 - q) * (x2 - q)
+                        + (y2 - r) * (y2 - r)
+                        + (z2 - s) * (z2 - s)
+                    )
+                    total[3, j] += (
+                        (w3 - p) * (w3 - p)
+                        + (x3 - q) * (x3 - q)
+                        + (y3 - r) * (y3 - r)
+                        + (z3 - s) * (z3 - s)
+                    )
             for j in range(width):
                 out[i, start + j] = np.sqrt(total[0, j])
                 out[i1, start + j] = np.sqrt(total[1, j])
@@ -184,6 +215,66 @@ def accumulate(m: F32, above: F32, corner: float, edge: float) -> None:
             _one_row(m[i], above, first, side)
             i += 1
         above, first = m[i - 1], side
+
+
+@nb.njit(nogil=True, cache=True)
+def _row_steps(
+    now: F32, above: F32, corner: np.float32, edge: np.float32, shift: int, out: U8
+) -> None:
+    diagonal, up, left = np.uint8(DIAGONAL), np.uint8(UP << shift), np.uint8(LEFT << shift)
+    first = left if above[0] > edge else up
+    out[0] |= diagonal if corner <= min(above[0], edge) else first
+    for j in range(1, now.shape[0]):
+        a, b, c = above[j - 1], above[j], now[j - 1]
+        straight = left if b > c else up
+        out[j] |= diagonal if a <= min(b, c) else straight
+
+
+@nb.njit(nogil=True, cache=True)
+def steps(m: F32, above: F32, corner: float, edge: float, out: U8) -> None:
+    """Tell by which step the cheapest path comes to each cell; a diagonal step wins a tie.
+
+    Parameters
+    ----------
+    m
+        (n, S) accumulated distances of a block of rows.
+    above, corner, edge
+        As in `accumulate`.
+    out
+        (ceil(n / 4), S) zeros; the steps are written into it, four rows to a byte.
+    """
+    before, side = np.float32(corner), np.float32(edge)
+    for i in range(m.shape[0]):
+        _row_steps(m[i], above, before, side, 2 * (i & 3), out[i >> 2])
+        above, before = m[i], side
+
+
+@nb.njit(nogil=True, cache=True)
+def trace(steps: U8, i: int, j: int, open_rows: bool, open_columns: bool, path: I32) -> int:
+    """Walk the cheapest path back from cell (i, j) along the steps that lead to it.
+
+    Parameters
+    ----------
+    steps
+        (ceil(R / 4), S) as `steps` writes them.
+    open_rows, open_columns, path
+        As in `backtrack`.
+
+    Returns
+    -------
+    The index in `path` of the path's first pair.
+    """
+    at = len(path) - 1
+    path[at, 0], path[at, 1] = i, j
+    while not ((i == 0 and (j == 0 or open_columns)) or (j == 0 and open_rows)):
+        step = (steps[i >> 2, j] >> np.uint8(2 * (i & 3))) & 3
+        # At the borders there is but one way, whatever the costs.
+        step = LEFT if i == 0 else (UP if j == 0 else step)
+        i -= step != LEFT
+        j -= step != UP
+        at -= 1
+        path[at, 0], path[at, 1] = i, j
+    return at
 
 
 @nb.njit(nogil=True, cache=True)
