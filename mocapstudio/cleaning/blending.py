@@ -23,8 +23,21 @@ def savitzky_golay(half: int) -> Array:
 def smooth_seams(inside: Array, before: Array | None, after: Array | None, half: int) -> Array:
     """Smooth the first and last `half` frames of a replacement with a quadratic filter.
 
-    Frames outside are read, never changed; `before` and `after` hold at least `half` frames where
-    the take has them.
+    Frames outside are read, never changed.
+
+    Parameters
+    ----------
+    inside
+        (n, 4) quaternions of the replacement.
+    before, after
+        (b, 4) and (a, 4) frames around it, at least `half` of them where the take has them; None
+        at the take's ends.
+    half
+        Half the width of the filter, frames.
+
+    Returns
+    -------
+    (n, 4) quaternions, sign-continuous.
     """
     n = len(inside)
     parts = [part for part in (before, inside, after) if part is not None and len(part)]

@@ -15,7 +15,7 @@ HEADING_DEGREES = 40.0
 
 
 def value_of(residual: F32, scale: F32 | float) -> F32:
-    """Map a residual to 0..1 so that it reaches 0.5 at `scale`."""
+    """Map residuals (T, m) to 0..1 so that they reach 0.5 at `scale`, (m,) or one for all."""
     return np.asarray(1.0 - np.exp2(-((residual / scale) ** 2)), dtype=np.float32)
 
 
@@ -35,5 +35,5 @@ def calibrated(departures: F32) -> F32:
 
 
 def exceeding(ratio: F32) -> F32:
-    """Map how many times a threshold is exceeded to 0..1, 0.5 at once."""
+    """Map how many times a threshold is reached, of any shape, to 0..1: 0.5 where it just is."""
     return value_of(ratio, 1.0)

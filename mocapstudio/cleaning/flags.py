@@ -69,7 +69,7 @@ def _spans(
 
 
 def score_of(values: NDArray[np.float32], threshold: float) -> float:
-    """Score of a flagged span, 0..1: its peak, weighed with how long it stays up."""
+    """Score of a flagged span, 0..1, of the map's values (n,): its peak, and how high it stays."""
     above = values[values > threshold]
     return float(0.7 * values.max() + 0.3 * above.mean()) if len(above) else float(values.max())
 
@@ -80,6 +80,15 @@ def spans_above(
     """Half-open spans where `values` exceed `threshold`, gaps of up to `bridge` frames closed.
 
     A gap that holds a 0 stays open: there somebody called the row normal, or protected it.
+
+    Parameters
+    ----------
+    values
+        (F,) one row of the map, 0..1.
+    threshold
+        What must be exceeded.
+    bridge
+        Frames.
     """
     above = np.concatenate([[False], values > threshold, [False]])
     edges = np.flatnonzero(above[1:] != above[:-1])

@@ -23,7 +23,15 @@ F32 = NDArray[np.float32]
 
 
 def of_joints(take: Take, texture: MotionTexture, values: F32, departures: F32) -> DigressionMap:
-    """Lay joints' values and departures (T, m; radians) at the own rate, root rows left empty."""
+    """Lay a map of joints at the take's own rate, root rows left empty.
+
+    Parameters
+    ----------
+    values
+        (T, m) 0..1, at the texture's rate.
+    departures
+        (T, m) radians, at the texture's rate.
+    """
     empty = np.zeros((take.frames, len(ROOT_ROWS)), dtype=np.float32)
     degrees = np.asarray(np.rad2deg(departures), dtype=np.float32)
     return DigressionMap(

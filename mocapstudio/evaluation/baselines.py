@@ -57,7 +57,7 @@ class Limits:
     factor: float = 1.0
 
     def beyond_limits(self, take: Take, _: Sequence[Take] = ()) -> tuple[tuple[str, ...], Array]:
-        """Baseline (a): 0.5 at the margin beyond the joint limits."""
+        """Baseline (a): rows and (F, R) map, 0.5 at the margin beyond the joint limits."""
         away = _vectors(take, self.rows, self.centre)
         excess = np.maximum(self.low - away, away - self.high).max(axis=-1)
         margin = max(self.margin, 1e-3)
@@ -65,12 +65,12 @@ class Limits:
         return self.rows, positive / (positive + margin)
 
     def too_fast(self, take: Take, _: Sequence[Take] = ()) -> tuple[tuple[str, ...], Array]:
-        """Baseline (b): 0.5 at `factor` times the fastest change."""
+        """Baseline (b): rows and (F, R) map, 0.5 at `factor` times the fastest change."""
         ratio = _speeds(take, self.rows) / (self.factor * self.fastest)
         return self.rows, ratio / (1.0 + ratio)
 
     def either(self, take: Take, _: Sequence[Take] = ()) -> tuple[tuple[str, ...], Array]:
-        """Baseline (c): the larger of both."""
+        """Baseline (c): rows and (F, R) map, the larger of both."""
         return self.rows, np.maximum(self.beyond_limits(take)[1], self.too_fast(take)[1])
 
 

@@ -1,4 +1,4 @@
-"""Run detectors over cases and score them (bench.md, 'Detection')."""
+"""Run detectors over cases and score them."""
 
 from __future__ import annotations
 

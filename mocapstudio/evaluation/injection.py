@@ -1,4 +1,4 @@
-"""Errors of known place and shape, injected into clean takes (bench.md, 'Detection').
+"""Errors of known place and shape, injected into clean takes.
 
 `inject` draws where and how; `apply` repeats from a `Truth` exactly what was drawn, so that a
 benchmark can be re-run from its record. Every change lies inside the truth's span.

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Answer = tuple[float, NDArray[np.int64] | None]
 Peer = Callable[[Array, Array], Answer]
+"""Given the poses (R, D) of the reference and (S, D) of the source: cost, and path (P, 2)."""
 
 
 def tslearn(reference: Array, source: Array) -> Answer:

@@ -130,7 +130,7 @@ def cleaned_case(data: Sequence[Path], cleaned: Path, context: ContextSize = "la
 
 
 def events_of(mask: Mask, rows: Sequence[str]) -> list[Truth]:
-    """Every run of erroneous frames of a row, as an error of unknown kind."""
+    """Every run of erroneous frames of a row of `mask` (F, R), as an error of unknown kind."""
     found = []
     for column, row in enumerate(rows):
         edges = np.diff(np.concatenate([[0], mask[:, column].astype(np.int8), [0]]))

@@ -38,7 +38,7 @@ def detector_of(values_of: ValueMap, *, curve: bool = True) -> Detector:
 def flags_above(
     values: Array, rows: Sequence[str], threshold: float, rate: float
 ) -> tuple[Flag, ...]:
-    """Spans of a row above the threshold, those nearer than 1/8 s taken as one."""
+    """Spans of rows of a map (F, R) above the threshold, those nearer than 1/8 s taken as one."""
     flags = []
     for column, row in enumerate(rows):
         for start, end in _runs(values[:, column] > threshold, round(_BRIDGE_SECONDS * rate)):

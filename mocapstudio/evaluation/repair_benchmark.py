@@ -1,4 +1,4 @@
-"""Repair cases with known errors by every method and compare (bench.md, 'Repair')."""
+"""Repair cases with known errors by every method and compare."""
 
 from __future__ import annotations
 

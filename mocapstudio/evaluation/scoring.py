@@ -1,4 +1,4 @@
-"""How well flags agree with what is known to be wrong (bench.md, 'Detection').
+"""How well flags agree with what is known to be wrong.
 
 Words are 15 frames at 24 fps, hopping by 5, mapped to the take's own rate: a frame belongs to
 every word whose time span holds it.

@@ -1,4 +1,4 @@
-"""How fast the neighbour search is in a large context, and what the index misses (bench.md)."""
+"""How fast the neighbour search is in a large context, and what the index misses."""
 
 from __future__ import annotations
 

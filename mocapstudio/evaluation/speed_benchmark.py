@@ -1,4 +1,4 @@
-"""How long the parts of an analysis take, warm and in process (bench.md, 'Speed')."""
+"""How long the parts of an analysis take, warm and in process."""
 
 from __future__ import annotations
 

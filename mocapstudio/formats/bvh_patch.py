@@ -71,7 +71,7 @@ def patched(take: Take, declared: Sequence[Declared], *, trim: bool) -> Iterator
 
 
 def as_read(take: Take, source: Source) -> tuple[Array, Take]:
-    """Return the numbers of the source's rows, and the take as it was when it was read."""
+    """Return the numbers (F, C) of the source's rows, and the take as it was when it was read."""
     record: BvhRecord = source.record
     block = record.block
     reading = Reading(source.path, record.data, True, [])

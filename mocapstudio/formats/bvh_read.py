@@ -178,7 +178,19 @@ def in_metres(skeleton: Skeleton, unit: float) -> Skeleton:
 
 
 def turn_inside(rotations: Array, translations: Array, source: Source) -> Array:
-    """Turn the root (in place) into our axes; return the translations in metres and our axes."""
+    """Turn a motion in units and axes of its file into metres and our axes, in place.
+
+    Parameters
+    ----------
+    rotations, translations
+        (F, J, 4) and (F, T, 3), see `Take`; the root is the first of both.
+    source
+        Which unit and which turn.
+
+    Returns
+    -------
+    The translations.
+    """
     translations *= source.unit
     if not np.array_equal(source.to_inside, rot.IDENTITY):
         rotations[:, 0] = rot.multiply(source.to_inside, rotations[:, 0])

@@ -64,6 +64,17 @@ def lay_out(
     repeat it there, others leave it zero, and for the root some write a rest height that the
     channel already holds. Only where the channels below the root are all but zero while the
     offsets are not, are they displacements.
+
+    Parameters
+    ----------
+    hierarchy
+        What the file declares.
+    numbers
+        (F, C) of its motion, one column a channel.
+    radians
+        Whether its angles are radians.
+    add_root
+        Whether the root's OFFSET is added to its channels.
     """
     joints = hierarchy.joints
     offsets = np.array([joint.offset for joint in joints])

@@ -35,7 +35,7 @@ class Numbers:
         return ">" if self.name == "MIPS" else "<"
 
     def words(self, data: bytes | memoryview) -> NDArray[np.int16]:
-        """Signed 16-bit integers."""
+        """(n,) signed 16-bit integers of 2 n bytes."""
         return np.frombuffer(data, dtype=f"{self.order}i2").astype(np.int16)
 
     def word(self, data: bytes, at: int) -> int:
@@ -43,7 +43,7 @@ class Numbers:
         return int(self.words(data[at : at + 2])[0]) & 0xFFFF
 
     def floats(self, data: bytes | memoryview) -> NDArray[np.float32]:
-        """32-bit floats."""
+        """(n,) 32-bit floats of 4 n bytes."""
         if self.name != "DEC":
             return np.frombuffer(data, dtype=f"{self.order}f4").astype(np.float32)
         # A VAX F float is a little-endian pair of words, the high one first, times four.

@@ -69,7 +69,7 @@ class Parameters:
         return next(iter(self.texts(group, name)), "")
 
     def values(self, group: str, name: str) -> NDArray[np.float64]:
-        """Numbers of a parameter; none where there is none."""
+        """Numbers of a parameter, flat; (0,) where there is none."""
         one = self.get(group, name)
         return np.empty(0) if one is None or one.numbers is None else one.numbers
 

@@ -79,7 +79,7 @@ def guess_up(
 
 
 def turn_to_y_up(up: Up) -> Array:
-    """Quaternion that turns a world whose `up` axis points up into one where Y does."""
+    """(4,) quaternion that turns a world whose `up` axis points up into one where Y does."""
     quarter = np.sqrt(0.5)
     if up == "z":
         return np.array([-quarter, 0.0, 0.0, quarter])
@@ -89,7 +89,7 @@ def turn_to_y_up(up: Up) -> Array:
 
 
 def turn_to_inside(up: Up, forward: Forward | None = None) -> Array:
-    """Quaternion that turns a world with these axes into one where Y is up and, if told, Z forward.
+    """(4,) quaternion that turns a world with these axes into one of Y up and, if told, Z forward.
 
     Raises
     ------

@@ -132,7 +132,7 @@ class Body:
         self.first = self.first_frame(frames)
 
     def seconds_of(self, times: Array) -> float:
-        """Seconds per unit of the times; a step of many is one of milliseconds."""
+        """Seconds per unit of the times (F,); a step of many is one of milliseconds."""
         steps = np.diff(times)
         step = float(np.median(steps)) if len(steps) else 0.0
         if self.tick == 1.0 and _MILLISECONDS[0] <= step <= _MILLISECONDS[1]:
@@ -151,7 +151,7 @@ class Body:
         self.reading.problems.append(problem)
 
     def first_frame(self, frames: Array | None) -> int:
-        """Return the number of the first frame.
+        """Return the number of the first frame, of the (F,) numbers of all, if there are any.
 
         Raises
         ------

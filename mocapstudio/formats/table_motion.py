@@ -71,7 +71,7 @@ def marker_take(reading: Reading, head: Head, options: ReadOptions, form: str) -
 
 
 def inside(positions: Array, source: Source) -> Array:
-    """Turn positions in units and axes of a file into metres and our axes."""
+    """Turn positions (F, M, 3) in units and axes of a file into metres and our axes."""
     positions = positions * source.unit
     if np.array_equal(source.to_inside, rot.IDENTITY):
         return positions
@@ -79,7 +79,7 @@ def inside(positions: Array, source: Source) -> Array:
 
 
 def as_read(source: Source) -> Array:
-    """Return the positions that a table was read as, from the bytes that were kept of it."""
+    """(F, M, 3) metres that a table was read as, from the bytes that were kept of it."""
     record: TableRecord = source.record
     reading = Reading(source.path, record.sheet.data, True, [])
     first = int(record.lines[0])

@@ -85,7 +85,7 @@ def _usual_rate(times: Array, step: float, resolution: float) -> Fraction | None
 
 
 def departure(times: Array, step: float) -> float:
-    """Seconds by which times differ at most from even steps after the first."""
+    """Seconds by which times (F,) differ at most from even steps after the first."""
     return float(np.abs(times - times[0] - step * np.arange(len(times))).max())
 
 
@@ -94,7 +94,7 @@ def _usual(steps: Array) -> float:
 
 
 def can_resample(times: Array, rate: Fraction) -> bool:
-    """Tell whether even steps from the first time to the last are a sensible number of frames."""
+    """Tell whether even steps from the first of times (F,) to the last are sensibly many frames."""
     if not np.isfinite(times).all() or not (np.diff(times) > 0).all():
         return False
     return float(times[-1] - times[0]) * float(rate) < _MOST_ROWS * len(times)

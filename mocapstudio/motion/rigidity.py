@@ -32,7 +32,7 @@ class Distances:
     spread: Array
 
     def nearest(self, marker: int) -> NDArray[np.int64]:
-        """Other markers with a finite spread, the most rigidly joined first."""
+        """Indices of other markers with a finite spread, the most rigidly joined first."""
         order = np.argsort(self.spread[marker], kind="stable")
         known = np.isfinite(self.spread[marker][order]) & (order != marker)
         return np.asarray(order[known])

@@ -65,13 +65,13 @@ def log(q: Array) -> Array:
 
 
 def exp(half_vector: Array) -> Array:
-    """Inverse of `log`: quaternion of twice the given half rotation vector."""
+    """Inverse of `log`: quaternions of half rotation vectors (..., 3), radians."""
     half = np.linalg.norm(half_vector, axis=-1, keepdims=True)
     return np.concatenate([half_vector * np.sinc(half / np.pi), np.cos(half)], axis=-1)
 
 
 def from_rotation_vector(vector: Array) -> Array:
-    """Quaternion of a rotation vector (axis times angle, radians)."""
+    """Quaternions of rotation vectors (..., 3): axis times angle, radians."""
     return exp(0.5 * vector)
 
 
@@ -98,7 +98,7 @@ def continuous(q: Array) -> Array:
 
 
 def slerp(a: Array, b: Array, t: Array | float) -> Array:
-    """Spherical interpolation from `a` (t = 0) to `b` (t = 1) on the shorter arc."""
+    """Spherical interpolation from `a` (t = 0) to `b` (t = 1) on the shorter arc; `t` is (...)."""
     step = log(multiply(conjugate(a), b))
     return multiply(a, exp(np.asarray(t, dtype=float)[..., None] * step))
 
@@ -106,8 +106,7 @@ def slerp(a: Array, b: Array, t: Array | float) -> Array:
 def mean(q: Array, axis: int = 0) -> Array:
     """Rotation mean along `axis`: signs aligned to the first, chordal mean, unit length.
 
-    The chordal mean of sign-aligned quaternions is what Notes on paper 1 ask for; it is never a
-    mean of Euler angles.
+    Unlike a mean of Euler angles it depends on no order of axes and jumps nowhere.
     """
     first = np.take(q, [0], axis=axis)
     signs = np.where(np.sum(q * first, axis=-1, keepdims=True) < 0, -1.0, 1.0)
@@ -115,13 +114,13 @@ def mean(q: Array, axis: int = 0) -> Array:
 
 
 def twist_angle(q: Array, axis: int) -> Array:
-    """Angle (radians, in (-pi, pi]) of the part of `q` that turns about coordinate `axis`."""
+    """Angle (...), radians in (-pi, pi], of the part of `q` that turns about coordinate `axis`."""
     turned = np.where(q[..., 3] < 0, -1.0, 1.0)
     return 2.0 * np.arctan2(turned * q[..., axis], turned * q[..., 3])
 
 
 def about_axis(axis: int, angles: Array) -> Array:
-    """Quaternions that turn by `angles` (radians) about coordinate axis 0, 1 or 2."""
+    """Quaternions that turn by `angles` (...), radians, about coordinate axis 0, 1 or 2."""
     angles = np.asarray(angles, dtype=float)
     q = np.zeros((*angles.shape, 4))
     q[..., axis] = np.sin(0.5 * angles)

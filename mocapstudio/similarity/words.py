@@ -90,7 +90,7 @@ class WordNeighbours:
 
     @staticmethod
     def none(words: I64, keep: int) -> WordNeighbours:
-        """As if none were found, to be filled."""
+        """No neighbours yet of source words that begin at `words` (W,), with room for `keep`."""
         return WordNeighbours(
             words,
             np.full((len(words), keep), -1, dtype=np.int64),
@@ -100,7 +100,7 @@ class WordNeighbours:
 
 
 def word_starts(frames: int, shape: WordShape) -> I64:
-    """First frames of the source words: every hop, and one more that reaches the last frame."""
+    """(W,) first frames of the source words: every hop, and one that reaches the last frame."""
     if frames < shape.source:
         return np.zeros(0, dtype=np.int64)
     starts = list(range(0, frames - shape.source + 1, shape.hop))
@@ -209,7 +209,7 @@ def _straddling(corpus: Corpus, count: int, shape: WordShape) -> NDArray[np.bool
 
 
 def barred(word: int, shape: WordShape) -> I64:
-    """Target words whose centre is nearer than N/2 frames to the source word's centre."""
+    """(2,) half-open target words whose centre is within N/2 frames of the source word's centre."""
     centre = word + shape.source // 2 - shape.target // 2
     return np.array([centre - shape.source // 2, centre + shape.source // 2 + 1], dtype=np.int64)
 

@@ -183,7 +183,7 @@ def _steps(source: F32) -> F32:
 
 
 def moved(values: F32, by: int) -> F32:
-    """Values of the frame `by` frames on, held at the ends."""
+    """Values (S, ...) of the frame `by` frames on, held at the ends."""
     return values[np.clip(np.arange(len(values)) + by, 0, len(values) - 1)]
 
 
@@ -194,7 +194,7 @@ def windows(values: F32, half: int) -> F32:
 
 
 def running_median(values: F32, half: int) -> F32:
-    """Median over about 2 half + 1 frames, of every third frame."""
+    """(S, n) median over about 2 half + 1 frames of each column, taken of every third frame."""
     coarse = values[::3]
     median = np.median(windows(coarse, half // 3), axis=-1)
     return np.asarray(np.repeat(median, 3, axis=0)[: len(values)], dtype=np.float32)

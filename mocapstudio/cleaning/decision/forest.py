@@ -99,7 +99,7 @@ class Forest:
 
 
 def as_probability(odds: F32) -> F32:
-    """Probability from log-odds."""
+    """Probabilities of log-odds, of any shape."""
     return np.asarray(1.0 / (1.0 + np.exp(-odds)), dtype=np.float32)
 
 

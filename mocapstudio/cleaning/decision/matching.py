@@ -109,7 +109,7 @@ def match(
 
 
 def nearest_takes(matches: Matches) -> I64:
-    """Indices of the context's takes, those that gave most neighbours first."""
+    """Indices (N,) of the N takes of the context, those that gave most neighbours first."""
     frames = matches.found[matches.found >= 0]
     which = np.searchsorted(matches.starts, frames, side="right") - 2
     return np.argsort(-np.bincount(which[which >= 0], minlength=len(matches.starts) - 1))

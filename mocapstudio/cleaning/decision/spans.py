@@ -140,7 +140,7 @@ def judged(probability: F32, joints: F32, limb: NDArray[np.int64], forest: Fores
 
 
 def as_rare(probability: F32) -> F32:
-    """Correct the odds for how much rarer errors are than in the examples."""
+    """Correct probabilities, of any shape, for how much rarer errors are than in the examples."""
     return np.asarray(probability / (probability + RARER * (1.0 - probability)))
 
 

@@ -69,6 +69,6 @@ def mean_pose(textures: Sequence[MotionTexture]) -> F32:
 
 
 def moments_of(texture: MotionTexture, centre: F32) -> Moments:
-    """Moments of one take's stacked poses."""
+    """Moments of a take's stacked poses, as rotation vectors from the mean pose `centre` (m, 4)."""
     vectors = gaussian.rotation_vectors(texture.quaternions, centre)
     return gaussian.moments(gaussian.stacked(vectors))

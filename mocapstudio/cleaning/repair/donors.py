@@ -78,7 +78,7 @@ def aligned(
     Returns
     -------
     frames, matched
-        Increasing frames of the take, and the donor's frames there.
+        (n,) increasing frames of the take, and (n,) the donor's frames there, both with fractions.
     """
     take, other = analysis.take, take_of(analysis, donor)
     right = [name for name in analysis.texture.joints if name not in wrong]

@@ -160,7 +160,21 @@ class Trials:
 def trials(
     residuals: F64, kernels: Sequence[Kernel], span: Span, starts: NDArray[np.int64], rate: float
 ) -> Trials:
-    """Lead residuals (F', 3) across stretches that begin, flank included, at `starts`."""
+    """Lead residuals across stretches where they are known, to see how much is missed.
+
+    Parameters
+    ----------
+    residuals
+        (F', 3) radians.
+    kernels
+        Those to choose from, the general one first.
+    span
+        Half-open frames of what is to be led across; stretches are as long.
+    starts
+        (t,) first frames of the stretches, flank included.
+    rate
+        Frames a second.
+    """
     n, reach = span[1] - span[0], max(2, round(_TRIAL_SECONDS * rate))
     if not len(starts):
         return Trials(kernels[0], np.zeros((0, n, 3)))

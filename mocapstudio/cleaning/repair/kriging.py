@@ -60,7 +60,7 @@ def weights(kernel: Kernel, known: F64, wanted: F64) -> F64:
 
 
 def flanks(usable: Mask, start: int, end: int, rate: float) -> NDArray[np.int64]:
-    """Usable frames within a second before and after [start, end)."""
+    """Usable frames (k,) within a second before and after [start, end); `usable` is (F,)."""
     reach = max(2, round(FLANK_SECONDS * rate))
     low, high = max(start - reach, 0), min(end + reach, len(usable))
     frames = np.arange(low, high)

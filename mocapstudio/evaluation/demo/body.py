@@ -47,7 +47,7 @@ class Motion:
 def move(
     skeleton: Skeleton, route: Route, reaching: Reaching, times: Array, rng: np.random.Generator
 ) -> Motion:
-    """Move the whole body along the route, reaching on the way."""
+    """Move the whole body along the route, reaching on the way; `times` (F,) seconds."""
     local = np.tile(rot.IDENTITY, (len(times), len(skeleton), 1))
     x, z, heading = route.path(route.phase).T
     ground = rot.about_axis(1, heading)

@@ -57,20 +57,20 @@ _thigh, _knee, _foot = _periodic(_THIGH), _periodic(_KNEE), _flat_where_flat(_FO
 
 
 def thigh_angle(phase: Array) -> Array:
-    """Radians, forward positive: thigh against the vertical."""
+    """Radians (F,), forward positive: thigh against the vertical, at phases (F,) of the stride."""
     return np.asarray(_thigh(phase % 1.0))
 
 
 def knee_angle(phase: Array) -> Array:
-    """Radians, flexion positive."""
+    """Radians (F,), flexion positive, at phases (F,) of the stride."""
     return np.asarray(_knee(phase % 1.0))
 
 
 def foot_angle(phase: Array) -> Array:
-    """Radians, toes up positive: sole against the floor."""
+    """Radians (F,), toes up positive: sole against the floor, at phases (F,) of the stride."""
     return np.asarray(_foot(phase % 1.0))
 
 
 def wave(phase: Array, peak: float, harmonic: int = 1) -> Array:
-    """Cosine over the stride with its maximum at phase `peak`."""
+    """(F,) cosine over the stride with its maximum at phase `peak`."""
     return np.cos(2 * np.pi * harmonic * (phase - peak))

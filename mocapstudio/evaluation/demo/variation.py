@@ -36,6 +36,6 @@ def smooth_noise(
 
 
 def minimum_jerk(u: Array) -> Array:
-    """Flash and Hogan's minimum-jerk profile: 0 below 0, 1 above 1, smooth between."""
+    """Flash and Hogan's minimum-jerk profile, any shape: 0 below 0, 1 above 1, smooth between."""
     u = np.clip(u, 0.0, 1.0)
     return np.asarray(u**3 * (10 + u * (6 * u - 15)))
