@@ -14,7 +14,7 @@ from PySide6.QtCore import (
     QSignalBlocker,
     Qt,
 )
-from PySide6.QtGui import QColor
+from PySide6.QtGui import QColor, QResizeEvent
 from PySide6.QtWidgets import QAbstractItemView, QFrame, QHeaderView, QTableView, QVBoxLayout
 
 from mocapstudio.gui import theme
@@ -45,6 +45,10 @@ _TITLES = {
     Column.FILLED: ("Filled", "Share of the frames in which it was filled, not measured"),
 }
 _WIDTHS = {Column.GAPS: 46, Column.LONGEST: 62, Column.MISSING: 62, Column.FILLED: 62}
+
+
+_ROOMY = 340
+"""Pixels from which there is room for the last column."""
 
 
 class GapModel(QAbstractTableModel):
@@ -143,6 +147,11 @@ class GapTable(QFrame):
         """Take over the colours of the theme in force."""
         self._table.viewport().update()
 
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Leave out the column that there is no room for."""
+        super().resizeEvent(event)
+        self._show(self._bridge.shown)
+
     def _make_table(self) -> QTableView:
         table = QTableView()
         table.setObjectName("markers-table")
@@ -182,7 +191,8 @@ class GapTable(QFrame):
     def _show(self, shown: MarkersShown) -> None:
         self._model.show(shown.gaps.markers)
         anything = any(one.filled for one in shown.gaps.markers)
-        self._table.setColumnHidden(Column.FILLED, not anything)
+        narrow = self.width() < _ROOMY
+        self._table.setColumnHidden(Column.FILLED, narrow or not anything)
         left = len(shown.gaps.in_time)
         self._count.setText(f"{left} gap{'' if left == 1 else 's'}" if shown.result else "")
         row = self._model.row_of(shown.marker)
