@@ -158,7 +158,7 @@ def _measured(analysis: Analysis, flag: Flag) -> Generator[Progress, None, Dista
     for first in range(0, words, step):
         yield Progress(first / words, "measuring distances")
         last = min(first + step, words)
-        poses = _pose_distances(analysis, flag, window, first, last + longest - 1)
+        poses = pose_distances(analysis, flag, window, first, last + longest - 1)
         row, reached = np.empty(last - first, np.float32), np.empty((2, last - first), np.int16)
         kernels.dtw_word(poses, longest, row, reached)
         squared[first:last], ends[:, first:last] = row, reached
@@ -181,7 +181,7 @@ def texture_span(texture: MotionTexture, flag: Flag | Declared) -> tuple[int, in
     return start, min(max(end, start + 1), len(texture))
 
 
-def _pose_distances(analysis: Analysis, flag: Flag, window: Window, first: int, last: int) -> F32:
+def pose_distances(analysis: Analysis, flag: Flag, window: Window, first: int, last: int) -> F32:
     """Pose distances (high - low, last - first) to a stretch of the corpus.
 
     The flagged joints count outside the span only.
