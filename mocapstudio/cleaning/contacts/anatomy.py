@@ -62,6 +62,12 @@ def extremities(skeleton: Skeleton, kind: str) -> tuple[Extremity, ...]:
     return tuple(one for one in found if one is not None)
 
 
+def carried_by(skeleton: Skeleton) -> dict[int, int]:
+    """Index of the ankle or wrist for every joint of a foot or hand, itself among them."""
+    ends = (*extremities(skeleton, "leg"), *extremities(skeleton, "arm"))
+    return {joint: end.joint for end in ends for joint in skeleton.descendants(end.joint)}
+
+
 def leg_length(skeleton: Skeleton) -> float:
     """Metres: thigh and shank, by which everything about contacts is scaled.
 

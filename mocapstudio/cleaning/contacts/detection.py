@@ -14,10 +14,11 @@ from itertools import chain, count
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapstudio.cleaning.contacts.anatomy import leg_length
+from mocapstudio.cleaning.contacts.anatomy import carried_by, leg_length
 from mocapstudio.cleaning.contacts.model import Contact, ContactPoint, Floor, Target
 from mocapstudio.cleaning.contacts.on_floor import on_floor
 from mocapstudio.cleaning.contacts.partners import held_by
+from mocapstudio.cleaning.contacts.pivots import Standing, held_at_pivots
 from mocapstudio.cleaning.contacts.points import contact_points, point_positions
 from mocapstudio.cleaning.contacts.spans import contact_spans, set_down
 from mocapstudio.motion.kinematics import take_pose
@@ -78,15 +79,19 @@ def detecting(
     x, y, z = (0.0, 1.0, 0.0) if resting.floor is None else resting.floor.normal.tolist()
     yield Progress(0.8, "spans")
     drawn = tuple(contact for contact in keep if contact.drawn)
-    found = []
+    standing = []
     rate, leg = float(take.rate), leg_length(take.skeleton)
+    feet = carried_by(take.skeleton)
     for column, point in enumerate(chosen):
         sure, place = resting.probability[:, column], positions[:, column]
         taken = [(c.start, c.end) for c in drawn if (c.joint, c.point) == point.key]
+        joint = take.skeleton.index[point.joint]
         for span in contact_spans(sure, rate, take.span, taken):
             for start, end in set_down(span, place, resting.speed[:, column], rate, leg):
                 target = Floor(float(np.median(place[start:end, 1])), (x, y, z))
-                found.append(_contact(point, start, end, target, float(sure[start:end].mean())))
+                contact = _contact(point, start, end, target, float(sure[start:end].mean()))
+                standing.append(Standing(contact, place, feet.get(joint, joint)))
+    found = held_at_pivots(standing, pose[1], rate)
     others = partners if isinstance(partners, Mapping) else {one.name: one for one in partners}
     if others:
         yield Progress(0.9, "hands of partners")

@@ -25,6 +25,8 @@ _NEAR = 0.07
 """Share of the leg: a rest this near the plane is a rest on the floor."""
 _CLEAR = 0.35
 """Share of the leg by which the hips are above a foot that carries."""
+_TIPTOE = 0.12
+"""Share of the leg by which no part of a foot that lies on something is above another."""
 _ALONE_SECONDS = 0.1
 
 
@@ -147,7 +149,10 @@ def _carrying(
         others = [n for n in range(len(names)) if n != mine]
         alone = ~resting[span][:, others].any(axis=1)
         alone &= (lowest[span, mine, None] < lowest[span][:, others] + _NEAR * leg).all(axis=1)
-        alone &= hips[span, 1] - positions[span, rest.point, 1] > _CLEAR * leg
+        above = positions[span, rest.point, 1]
+        # The heel of a foot on tiptoe rests in the air.
+        alone &= above < lowest[span, mine] + _TIPTOE * leg
+        alone &= hips[span, 1] - above > _CLEAR * leg
         result[i] = bool(others) and alone.sum() >= _ALONE_SECONDS * rate
     return result
 

@@ -20,6 +20,8 @@ _SLOPE_PRIOR = 0.2
 """Pull of the plane towards level, as rests of one second, a leg away, on a level floor."""
 _LEVEL_PRIOR = 0.1
 """Pull of each point's level towards the others', as a rest of so many seconds."""
+_UNEVEN = 0.08
+"""Share of the leg by which levels differ at most: who stands on tiptoe has no higher heels."""
 _STARTS = np.array(
     [(0.0, 0.0)]
     + [
@@ -123,6 +125,7 @@ def _refined(rests: _Rests, start: Array, points: int, leg: float) -> Array:
     height = float(np.median(lowest))
     solution = np.concatenate([start, [height], lowest - height])
     for _ in range(_ITERATIONS):
+        solution[3:] = np.clip(solution[3:], -_UNEVEN * leg, _UNEVEN * leg)
         trust = rests.weight * np.clip(1 - rests.off(solution, leg) ** 2, 0, None) ** 2 + 1e-9
         scaled = design * np.concatenate([trust, priors])[:, None]
         solution = np.linalg.solve(scaled.T @ design, scaled.T @ target)

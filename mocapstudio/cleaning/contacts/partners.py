@@ -34,7 +34,7 @@ _MISFIT = 1.5
 _FAR = 0.45
 """Legs: beyond this nothing is held."""
 _BESIDE, _IDLE = 0.18, 0.25
-"""Legs: hands farther apart than the one that move by less than the other hang beside each other."""
+"""Legs: hands farther apart than the one that move less than the other hang beside each other."""
 _REACH = 2.0
 """Legs: free hands are anywhere up to this far apart."""
 _SHORTEST = 0.25

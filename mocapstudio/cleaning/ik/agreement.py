@@ -31,6 +31,8 @@ _ALONG = 0.05
 """Share of a hold that remains along the line to a point that stands longer."""
 _APART = 0.005
 """Metres: points of one foot nearer than this are one point."""
+_SAME_FLOOR = 0.01
+"""Metres: heights of one floor, measured at two points, differ by less."""
 _STEEP = 0.3
 """A foot this far from level, as a share of its length, is not brought down flat."""
 _TURNED, _SHARE = np.cos(np.deg2rad(35.0)), 10.0
@@ -83,7 +85,8 @@ def agreed(take: Take, laid: Sequence[Hold]) -> tuple[Hold, ...]:
     # The longest contact has the first say.
     pairs.sort(key=lambda pair: -len(laid[pair.first].frames))
     turning = [_turns(pair) for pair in pairs]
-    placed = _placed(laid, [p for p, turns in zip(pairs, turning, strict=True) if not turns])
+    still = [p for p, turns in zip(pairs, turning, strict=True) if not turns]
+    placed = _in_reach(_placed(laid, still), still)
     free = {
         i: np.broadcast_to(np.eye(3), (len(hold.frames), 3, 3)).copy()
         for i, hold in enumerate(placed)
@@ -175,6 +178,30 @@ def _placed(laid: Sequence[Hold], pairs: Sequence[_Pair]) -> list[Hold]:
         replace(h, target=np.broadcast_to(on_floor(h.contact, spot), h.place.shape)) if free else h
         for h, spot, free in zip(laid, spots, chosen, strict=True)
     ]
+
+
+def _in_reach(placed: Sequence[Hold], pairs: Sequence[_Pair]) -> list[Hold]:
+    """Bring each point as far from the one that stands longer as bones hold them apart.
+
+    Floors that were measured a millimetre apart would otherwise pull a steep foot down the moment
+    that its other point is free.
+    """
+    result = list(placed)
+    settled: set[int] = set()
+    for pair in pairs:
+        second = result[pair.second]
+        if pair.second in settled or not isinstance(second.contact.target, Floor):
+            continue
+        settled.add(pair.second)
+        first = result[pair.first].target[0]
+        way = second.target[0] - first
+        length = float(np.median(np.linalg.norm(pair.ways, axis=1)))
+        off = length - float(np.linalg.norm(way))
+        if abs(off) < _SAME_FLOOR:
+            spot = second.target[0] + way * off / max(length - off, _APART)
+            target = np.broadcast_to(spot, second.target.shape)
+            result[pair.second] = replace(second, target=target)
+    return result
 
 
 def _standing_way(laid: Sequence[Hold], pair: _Pair) -> Array:

@@ -93,3 +93,15 @@ def test_without_any_rest_the_lowest_place_counts() -> None:
     assert floor.rests == ()
     assert np.ptp(floor.under) == 0
     assert 0.29 < floor.under[0, 0] < 0.32
+
+
+def test_who_stands_on_tiptoe_has_no_higher_heels() -> None:
+    """One foot flat, the other on its toes for the whole take."""
+    frames = 300
+    place = np.zeros((frames, 4, 3))
+    place[:, :, 2] = [0.0, 0.15, 0.3, 0.4]
+    place[:, 2, 1] = 0.18
+    place += 0.001 * np.sin(np.arange(frames) / 9)[:, None, None]
+    floor = fit_floor(place, RATE, LEG, np.full((frames, 3), [0, 0.9, 0.2]), [0, 0, 1, 1])
+    assert np.abs(floor.under[:, [0, 1, 3]]).max() < 0.01
+    assert floor.under[:, 2].max() < 0.09
