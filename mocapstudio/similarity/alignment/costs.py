@@ -56,7 +56,9 @@ class PoseDistances:
 
     def __init__(self, reference: F32, source: F32) -> None:
         _check(reference, source)
-        self.reference, self.source = (np.asarray(p, np.float32) for p in (reference, source))
+        self.reference, self.source = (
+            np.ascontiguousarray(poses, np.float32) for poses in (reference, source)
+        )
         self._rows = _padded(self.reference)
         self._chunks = _chunked(self.source, self._rows.shape[1])
 
@@ -81,8 +83,9 @@ class PoseDistances:
 
     def pairs(self, path: NDArray[np.int32]) -> F32:
         """(P,) costs of the pairs of a path (P, 2)."""
-        gaps = self.reference[path[:, 0]] - self.source[path[:, 1]]
-        return np.asarray(np.linalg.norm(gaps, axis=1), np.float32)
+        out = np.empty(len(path), np.float32)
+        kernels.pair_distances(self.reference, self.source, path, out)
+        return out
 
     def part(self, rows: Which, columns: Which) -> PoseDistances:
         """Return the costs of some frames, in the order in which they are given."""
@@ -223,8 +226,13 @@ def _check(reference: NDArray[np.floating], source: NDArray[np.floating]) -> Non
 
 def _padded(poses: F32) -> F32:
     """Pad poses (F, D) with zeros to a multiple of the dimensions that the kernels take."""
-    more = -poses.shape[1] % kernels.DIMENSIONS
-    return np.ascontiguousarray(np.pad(poses, ((0, 0), (0, more))) if more else poses)
+    frames, own = poses.shape
+    wanted = own + -own % kernels.DIMENSIONS
+    if own == wanted:
+        return poses
+    padded = np.zeros((frames, wanted), np.float32)
+    padded[:, :own] = poses
+    return padded
 
 
 def _chunked(poses: F32, dimensions: int) -> F32:

@@ -127,6 +127,17 @@ def distances_within(reference: F32, source: F32, low: I32, out: F32) -> None:
             inside[j] = np.sqrt(inside[j])
 
 
+@nb.njit(nogil=True, cache=True, fastmath=True)
+def pair_distances(reference: F32, source: F32, path: I32, out: F32) -> None:
+    """Euclidean distances (P,) between the poses, (R, D) and (S, D), of a path's pairs (P, 2)."""
+    for k in range(path.shape[0]):
+        x, y = reference[path[k, 0]], source[path[k, 1]]
+        total = _ZERO
+        for d in range(x.shape[0]):
+            total += (x[d] - y[d]) * (x[d] - y[d])
+        out[k] = np.sqrt(total)
+
+
 @nb.njit(nogil=True, cache=True)
 def _one_row(now: F32, above: F32, corner: np.float32, edge: np.float32) -> None:
     left, diagonal = edge, corner
