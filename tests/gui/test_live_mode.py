@@ -138,6 +138,21 @@ def test_curves_and_path_grow_with_the_frames(hands, workspace):
         assert len(pixels(plot)) > 4
 
 
+def test_a_click_looks_back_while_nothing_runs(hands, workspace):
+    live, bridge, timing = workspace.live, workspace.bridge, workspace.desk.live.timing
+    hands.press("B")
+    hands.press("L", SHIFT)
+    hands.see(lambda: live.shown.phase is Phase.ENDED, 60)
+    # The pupil is at the top half way through her reach, the teacher half way through his.
+    top = STILL + 36
+    click(timing, QPointF(timing.x_of(top / RATE), timing.area.center().y()))
+    assert bridge.state.source_frame == top
+    assert abs(bridge.state.frame - 36) <= 4
+    assert live.shown.looked == pytest.approx(top / RATE)
+    hands.key(Qt.Key.Key_Space)
+    hands.see(lambda: live.shown.phase is Phase.RUNNING and live.shown.looked is None)
+
+
 def test_it_follows_another_source_and_ends_with_the_last(hands, workspace):
     live = workspace.live
     workspace.bridge.sitting.add_sources([replace(TEACHER, name="other")])

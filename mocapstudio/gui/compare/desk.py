@@ -57,7 +57,7 @@ class CompareDesk(QWidget):
         self._below.addWidget(self.pictures)
         self.multiples = MultiplesView(bridge)
         self._below.addWidget(self.multiples)
-        self.live = LiveView(bridge, live)
+        self.live = LiveView(bridge, live, actions)
         self._below.addWidget(self.live)
         self._columns = QSplitter(Qt.Orientation.Horizontal)
         self._rows = QSplitter(Qt.Orientation.Vertical)

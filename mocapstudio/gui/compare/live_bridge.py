@@ -52,6 +52,8 @@ class LiveShown:
         On the performer's own clock, or None.
     frames
         How many arrived.
+    looked
+        Seconds of the action that are looked back at while it stands still, or None.
     notes
         How often something was odd about a frame, by what.
     faults, fault
@@ -71,6 +73,7 @@ class LiveShown:
     step: AlignmentStep | None = None
     seconds: float | None = None
     frames: int = 0
+    looked: float | None = None
     notes: tuple[tuple[Note, int], ...] = ()
     faults: int = 0
     fault: str = ""

@@ -12,7 +12,7 @@ LIVE = (
             "first"),
     Command("live-wait", "&Wait for the Beginning",
             "Wait until the action begins, and after its end for the next; off, the first frame"
-            " is its first", ("B",), checkable=True),
+            " is its first", ("B",), "defer", checkable=True),
     SEPARATOR,
     Command("weights-open", "Open We&ights…", "Align live with weights that were learnt",
             ("Ctrl+Shift+W",), "open"),

@@ -214,6 +214,22 @@ class LiveMode(QObject):
         if not ready.feed.ended:
             self._run()
 
+    def look(self, seconds: float) -> None:
+        """Show both as they were so many seconds into the action, while a take stands still."""
+        ready, shown = self._prepared, self._live.shown
+        still = shown.phase in (Phase.PAUSED, Phase.ENDED)
+        now, history = shown.now, shown.history
+        if ready is None or history is None or not history.frames or not still:
+            return
+        if now is None or now.began is None or self._frame is None:
+            return
+        reference = ready.live.aligner.reference
+        at = min(round(seconds * reference.rate), history.frames - 1)
+        self._live.set(looked=at / reference.rate)
+        matched = int(history.course.at[at // history.stride])
+        begin = self._frame - (now.frame - now.began)
+        self._bridge.sitting.go_both(reference.own_frame(matched), begin + at)
+
     def set_wait(self, wait: bool) -> None:
         """Wait for the action's beginning or not; begins anew where live mode is on."""
         self._live.set(wait=wait)
@@ -257,7 +273,7 @@ class LiveMode(QObject):
         # A stream goes on while nobody looks, a take does not.
         if not (paused and self._prepared is not None and not self._prepared.feed.slips):
             self._looked = self._clock()
-        self._live.set(phase=Phase.RUNNING)
+        self._live.set(phase=Phase.RUNNING, looked=None)
         self._timer.start()
 
     # -- frames
@@ -353,7 +369,15 @@ class LiveMode(QObject):
         self._notes.clear()
         self._action, self._frame = 0, None
         self._live.set(
-            now=None, step=None, seconds=None, frames=0, notes=(), faults=0, fault="", **changes
+            now=None,
+            step=None,
+            seconds=None,
+            frames=0,
+            looked=None,
+            notes=(),
+            faults=0,
+            fault="",
+            **changes,
         )
 
     def _noted(self) -> tuple[tuple[Note, int], ...]:

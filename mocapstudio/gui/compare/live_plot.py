@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QPointF, QRectF, Qt, QTimer
-from PySide6.QtGui import QColor, QPainter, QPaintEvent
+from PySide6.QtCore import QPointF, QRectF, Qt, QTimer, Signal
+from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 
 from mocapstudio.gui import theme as themes
@@ -26,15 +26,21 @@ Array = NDArray[np.float64]
 class LivePlot(QWidget):
     """Draws the course of the action a dozen times a second at most.
 
+    A click asks for what was there, which can be answered while nothing runs.
+
     Parameters
     ----------
     bridge, live
         Where state comes from.
     """
 
+    asked = Signal(float)
+    """Second of the action that the user wants to see."""
+
     def __init__(self, bridge: CompareBridge, live: LiveBridge) -> None:
         super().__init__()
         self._bridge, self._live = bridge, live
+        self.setCursor(Qt.CursorShape.PointingHandCursor)
         # Figures and heads move at every frame; pictures that grow need not.
         self._later = QTimer(self)
         self._later.setSingleShot(True)
@@ -45,6 +51,20 @@ class LivePlot(QWidget):
     def _follow(self, _old: LiveShown, _new: LiveShown) -> None:
         if self.isVisible() and not self._later.isActive():
             self._later.start()
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        """Ask for a second of the action."""
+        self._ask(event)
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        """Go on asking along the way."""
+        self._ask(event)
+
+    def _ask(self, event: QMouseEvent) -> None:
+        if event.buttons() & Qt.MouseButton.LeftButton:
+            area = self.area
+            share = (event.position().x() - area.left()) / area.width()
+            self.asked.emit(min(max(share, 0.0), 1.0) * self.seconds_wide)
 
     # -- geometry
 
@@ -99,6 +119,10 @@ class LivePlot(QWidget):
         if self._live.shown.history is not None:
             self.draw(p)
             self._draw_time(p)
+        if self._live.shown.looked is not None:
+            x = self.x_of(self._live.shown.looked)
+            p.setPen(QPen(QColor(look.playhead), 1, Qt.PenStyle.DashLine))
+            p.drawLine(QPointF(x, self.area.top()), QPointF(x, self.area.bottom()))
         p.end()
 
     def draw(self, p: QPainter) -> None:

@@ -108,12 +108,13 @@ class LiveTimeline(QWidget):
             box = QRectF(left + 0.5, _TOP, max(right - left - 1, 2), _LANE)
             here = step is not None and one.start <= step.reference_frame < one.end
             p.setPen(Qt.PenStyle.NoPen)
-            p.setBrush(QColor(look.selection if here else look.raised))
+            ground = colours.mixed(look.field, look.border, 0.55)
+            p.setBrush(QColor(look.selection) if here else ground)
             p.drawRoundedRect(box, 4, 4)
             p.setPen(QColor(look.text if here else look.muted))
-            words = metrics.elidedText(one.name, Qt.TextElideMode.ElideRight, box.width() - 8)
-            if len(words) > 1:
-                p.drawText(box, _CENTRE, words)
+            # Half a name says less than none: the present one stands in full beside.
+            if metrics.horizontalAdvance(one.name) <= box.width() - 6:
+                p.drawText(box, _CENTRE, one.name)
         if not state.segments:
             p.setPen(QColor(look.faint))
             p.drawText(lane, _CENTRE, "no segments: suggest, load or draw some to see their names")

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent
+from PySide6.QtCore import QEvent, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout
 
+from mocapstudio.gui.actions import Actions
 from mocapstudio.gui.compare.bridge import CompareBridge
 from mocapstudio.gui.compare.live_bridge import LiveBridge
 from mocapstudio.gui.compare.live_course import CostCurve, TimingCurve
@@ -24,9 +25,14 @@ class LiveView(NativeView):
     ----------
     bridge, live
         Where state comes from.
+    actions
+        The commands behind the buttons.
     """
 
-    def __init__(self, bridge: CompareBridge, live: LiveBridge) -> None:
+    asked = Signal(float)
+    """Second of the action that the user wants to see."""
+
+    def __init__(self, bridge: CompareBridge, live: LiveBridge, actions: Actions) -> None:
         super().__init__()
         self.setObjectName("live-view")
         self.setProperty("role", "panel")
@@ -34,16 +40,28 @@ class LiveView(NativeView):
         self.timeline = LiveTimeline(bridge, live)
         self.timing, self.cost = TimingCurve(bridge, live), CostCurve(bridge, live)
         self.matrix = LiveMatrix(bridge, live)
+        for plot in (self.timing, self.cost, self.matrix):
+            plot.asked.connect(self.asked)
         middle = QVBoxLayout()
         middle.setSpacing(0)
         middle.addWidget(self.timeline)
         middle.addWidget(self.timing, 3)
         middle.addWidget(self.cost, 2)
+        buttons = QHBoxLayout()
+        buttons.setContentsMargins(12, 4, 12, 8)
+        buttons.setSpacing(4)
+        for name, text in (("live-restart", "Restart"), ("live-wait", "Wait")):
+            buttons.addWidget(actions.tool_button(name, text=text))
+        buttons.addStretch(1)
         self.readout.setFixedWidth(_LEFT)
+        left = QVBoxLayout()
+        left.setSpacing(0)
+        left.addWidget(self.readout, 1)
+        left.addLayout(buttons)
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(0)
-        row.addWidget(self.readout)
+        row.addLayout(left)
         row.addLayout(middle, 1)
         row.addWidget(self.matrix)
 

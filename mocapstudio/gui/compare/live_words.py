@@ -63,9 +63,9 @@ def action_words(shown: LiveShown) -> str:
     if now is None or now.action == 0:
         return ""
     since = ""
-    if now.began is not None and shown.alignment is not None:
-        rate = shown.alignment.aligner.reference.rate
-        since = f", began at {clock(now.began / rate, 0.1)}"
+    if now.began is not None and shown.alignment is not None and shown.seconds is not None:
+        ago = (now.frame - now.began) / shown.alignment.aligner.reference.rate
+        since = f", began at {clock(max(shown.seconds - ago, 0.0), 0.1)}"
     return f"action {now.action}{since}"
 
 

@@ -191,7 +191,7 @@ class SegmentsView(QFrame):
         head.setHighlightSections(False)
         head.setMinimumSectionSize(20)
         modes = QHeaderView.ResizeMode
-        for section, width in enumerate((0, 46, 48, 54, 54)):
+        for section, width in enumerate((0, 46, 48, 54, 62)):
             head.setSectionResizeMode(section, modes.Fixed if width else modes.Stretch)
             if width:
                 head.resizeSection(section, width)

@@ -75,10 +75,13 @@ class Weighting:
         return Bars(feet, self._parts * _HEIGHT * size, _WIDTH * size, colours)
 
     def tints(self, own: Colour, hot: Colour) -> NDArray[np.uint8]:
-        """(P, 3) colour of each point: its own, or towards `hot` the more it counts."""
+        """(P, 3) colour of each point: its own, or towards `hot` the more it counts than others."""
         share = np.zeros(len(self._actor.names))
-        for end in self._ends.T:
-            np.maximum.at(share, end, self._parts.sum(axis=1))
+        total = self._parts.sum(axis=1)
+        if len(total) and total.max() > total.min():
+            total = (total - total.min()) / (total.max() - total.min())
+            for end in self._ends.T:
+                np.maximum.at(share, end, total)
         at = share[self._actor.owners][:, None]
         mixed = np.array(own) + at * (np.array(hot, dtype=float) - np.array(own))
         rounded: NDArray[np.uint8] = np.round(mixed).astype(np.uint8)

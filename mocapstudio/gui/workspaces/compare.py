@@ -73,6 +73,7 @@ class CompareWorkspace(Workspace):
         self.bridge.changed.connect(self._follow)
         self.bridge.ui_changed.connect(self._follow_ui)
         self.live.changed.connect(self._follow_live)
+        self.desk.live.asked.connect(self.live_mode.look)
         self._show(self.bridge.state)
 
     def answers(self) -> Answers:
