@@ -20,7 +20,7 @@ from mocapstudio import formats
 from mocapstudio.comparison.model import Segment
 from mocapstudio.comparison.weights import JointWeights, write_weights
 from mocapstudio.gui.compare.live_bridge import Phase
-from mocapstudio.gui.compare.live_mode import PATH_FRAMES
+from mocapstudio.gui.compare.live_intake import PATH_FRAMES
 from mocapstudio.gui.compare.live_opening import LiveRequest, open_live
 from mocapstudio.gui.dialogs.trouble import TroubleDialog
 from mocapstudio.gui.jobs import Lines

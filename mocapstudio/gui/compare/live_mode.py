@@ -1,71 +1,26 @@
-"""Live mode: frames arrive, are aligned one by one, and the sitting follows."""
+"""Live mode: what the user asks of it, and the clock that lets frames arrive."""
 
 from __future__ import annotations
 
 import time
-from collections import Counter
-from collections.abc import Callable, Generator
-from dataclasses import dataclass
+from collections.abc import Callable
 
 from PySide6.QtCore import QObject, Qt, QTimer, Signal
 
-from mocapstudio.comparison.live import LiveAlignment, LiveState, Note
-from mocapstudio.comparison.live_history import LiveHistory
-from mocapstudio.comparison.live_setup import live_alignment
-from mocapstudio.comparison.online_features import JointRotations
 from mocapstudio.comparison.weights import JointWeights
 from mocapstudio.gui.compare.bridge import CompareBridge
 from mocapstudio.gui.compare.live_bridge import LiveBridge, LiveShown, Phase
+from mocapstudio.gui.compare.live_intake import Intake, preparing
 from mocapstudio.gui.jobs import Jobs
 from mocapstudio.gui.messages import Messages
-from mocapstudio.motion.errors import FileError, MocapError, SkeletonMismatchError
-from mocapstudio.motion.progress import Progress
+from mocapstudio.motion.errors import MocapError
 from mocapstudio.review.comparing import ComparingState, Recording
-from mocapstudio.review.live_feeds import Arrived, Feed, StreamFeed, TakeFeed
-
-PATH_FRAMES = 4096
-"""Over how many frames the path can be drawn; the rest of a longer action keeps its trace."""
+from mocapstudio.review.live_feeds import StreamFeed
 
 _EVERY_MS = 16
 _BUDGET = 0.010
-_LONGEST_STEP = 0.1
 _DOING = "This could not be aligned live"
 _KEY = "live"
-
-
-@dataclass(frozen=True, eq=False)
-class _Prepared:
-    live: LiveAlignment
-    feed: Feed
-
-
-def preparing(
-    reference: Recording,
-    source: Recording | StreamFeed,
-    weights: JointWeights | None,
-    *,
-    rate: float | None,
-    wait: bool,
-) -> Generator[Progress, None, _Prepared]:
-    """Make the alignment, and run it once so that nothing is compiled while frames arrive."""
-    yield Progress(0.0, "preparing the live alignment")
-    takes = () if isinstance(source, StreamFeed) else (source,)
-    live = live_alignment(reference, takes, rate, weights, wait=wait, path_frames=PATH_FRAMES)
-    aligner = live.aligner
-    features = aligner.reference.features
-    feed: Feed
-    if isinstance(source, StreamFeed):
-        if not isinstance(features, JointRotations):
-            raise SkeletonMismatchError("the stream sends joints, the reference holds markers")
-        source.settle(features)
-        feed = source
-    else:
-        feed = TakeFeed(source, features)
-    yield Progress(0.7, "preparing the live alignment")
-    aligner.feed(features.of(reference)[0], 0.0)
-    aligner.path()
-    live.restart()
-    return _Prepared(live, feed)
 
 
 class LiveMode(QObject):
@@ -103,12 +58,9 @@ class LiveMode(QObject):
         self._stream: StreamFeed | None = None
         self._stream_rate: float | None = None
         self._hang_up: Callable[[], object] = lambda: None
-        self._prepared: _Prepared | None = None
+        self._intake: Intake | None = None
         self._performer: Recording | None = None
-        self._played, self._looked = 0.0, 0.0
-        self._action = 0
-        self._frame: int | None = None
-        self._notes: Counter[Note] = Counter()
+        self._looked = 0.0
         self._timer = QTimer(self)
         self._timer.setTimerType(Qt.TimerType.PreciseTimer)
         self._timer.setInterval(_EVERY_MS)
@@ -136,7 +88,7 @@ class LiveMode(QObject):
 
         `hang_up` is called when no more is wanted of it.
         """
-        self.hang_up()
+        self._let_go()
         self._stream, self._stream_rate, self._hang_up = stream, rate, hang_up
         self._live.set(streams=True, name=name)
         self.begin()
@@ -145,11 +97,11 @@ class LiveMode(QObject):
         """Switch live mode on, from the first frame, or go on waiting for a reference."""
         self._timer.stop()
         self._jobs.cancel(_KEY)
-        self._prepared = None
+        self._intake = None
         state = self._bridge.state
         if self._stream is not None and self._stream.ended and state.source is not None:
             # What the stream had to say was heard; now it is the source's turn.
-            self.hang_up()
+            self._let_go()
         if state.reference is None or not self.possible:
             return
         self._bridge.set_ui(playing=False)
@@ -164,16 +116,16 @@ class LiveMode(QObject):
             self._timer.start()
 
     def hang_up(self) -> None:
-        """Want no more of the stream."""
-        self._hang_up()
-        self._stream = None
-        self._live.set(streams=False)
+        """Want no more of the stream, if there is one; live mode ends with it."""
+        if self._stream is not None:
+            self._let_go()
+            self.stop()
 
     def stop(self) -> None:
         """Switch live mode off."""
         self._timer.stop()
         self._jobs.cancel(_KEY)
-        self._prepared = self._performer = None
+        self._intake = self._performer = None
         self._forget(phase=Phase.OFF, alignment=None, history=None)
 
     def switch(self) -> None:
@@ -201,34 +153,23 @@ class LiveMode(QObject):
 
     def restart(self) -> None:
         """Forget the action; a take is played from its beginning."""
-        ready = self._prepared
-        if ready is None:
+        if self._intake is None:
             return
-        ready.live.restart()
-        if isinstance(ready.feed, TakeFeed):
-            ready.feed.rewind()
-            self._played = 0.0
-        if self._live.shown.history is not None:
-            self._live.shown.history.clear()
+        self._intake.restart()
         self._forget()
-        if not ready.feed.ended:
+        if not self._intake.feed.ended:
             self._run()
 
     def look(self, seconds: float) -> None:
         """Show both as they were so many seconds into the action, while a take stands still."""
-        ready, shown = self._prepared, self._live.shown
-        still = shown.phase in (Phase.PAUSED, Phase.ENDED)
-        now, history = shown.now, shown.history
-        if ready is None or history is None or not history.frames or not still:
+        shown = self._live.shown
+        if self._intake is None or shown.phase not in (Phase.PAUSED, Phase.ENDED):
             return
-        if now is None or now.began is None or self._frame is None:
-            return
-        reference = ready.live.aligner.reference
-        at = min(round(seconds * reference.rate), history.frames - 1)
-        self._live.set(looked=at / reference.rate)
-        matched = int(history.course.at[at // history.stride])
-        begin = self._frame - (now.frame - now.began)
-        self._bridge.sitting.go_both(reference.own_frame(matched), begin + at)
+        found = None if shown.now is None else self._intake.frames_at(seconds, shown.now)
+        if found is not None:
+            frame, source_frame, kept = found
+            self._live.set(looked=kept)
+            self._bridge.sitting.go_both(frame, source_frame)
 
     def set_wait(self, wait: bool) -> None:
         """Wait for the action's beginning or not; begins anew where live mode is on."""
@@ -257,11 +198,9 @@ class LiveMode(QObject):
         title = "Preparing the live alignment"
         self._jobs.start(title, work, self._ready, self._fail, key=_KEY)
 
-    def _ready(self, prepared: _Prepared) -> None:
-        self._prepared = prepared
-        self._played = 0.0
-        history = LiveHistory(len(prepared.live.aligner.reference))
-        self._live.set(alignment=prepared.live, history=history)
+    def _ready(self, intake: Intake) -> None:
+        self._intake = intake
+        self._live.set(alignment=intake.live, history=intake.history)
         self._run()
 
     def _fail(self, error: BaseException) -> None:
@@ -271,7 +210,7 @@ class LiveMode(QObject):
     def _run(self) -> None:
         paused = self._live.shown.phase is Phase.PAUSED
         # A stream goes on while nobody looks, a take does not.
-        if not (paused and self._prepared is not None and not self._prepared.feed.slips):
+        if not (paused and self._intake is not None and not self._intake.feed.slips):
             self._looked = self._clock()
         self._live.set(phase=Phase.RUNNING, looked=None)
         self._timer.start()
@@ -280,82 +219,38 @@ class LiveMode(QObject):
 
     def tick(self) -> None:
         """Take in what has arrived by now."""
-        if self._prepared is None:
+        if self._intake is None:
             self._wait_for_rate()
             return
-        now = self._clock()
-        passed = now - self._looked
+        intake, now = self._intake, self._clock()
+        intake.pass_time(now - self._looked, self._bridge.ui.speed)
         self._looked = now
-        live, feed = self._prepared.live, self._prepared.feed
-        if feed.slips:
-            self._played += min(passed, _LONGEST_STEP) * self._bridge.ui.speed
-        else:
-            self._played += passed
-        changes = self._take_in(live, feed, now + _BUDGET)
-        if feed.ended:
+        try:
+            changes, latest = intake.take_in(lambda: self._clock() > now + _BUDGET)
+        except MocapError as error:
+            self._fail(error)
+            return
+        if latest is not None and latest.joints is not None:
+            self.posed.emit(latest)
+        if intake.feed.ended:
             self._timer.stop()
             changes["phase"] = Phase.ENDED
         if changes:
             self._live.set(**changes)
-            self._go(self._live.shown)
+            self._go(self._live.shown, intake.frame)
 
-    def _take_in(self, live: LiveAlignment, feed: Feed, until: float) -> dict[str, object]:
-        """Align frames until none is due or the time is up; returns what has changed."""
-        changes: dict[str, object] = {}
-        latest: Arrived | None = None
-        shown = self._live.shown
-        frames, faults = shown.frames, shown.faults
-        try:
-            while (one := feed.due(self._played)) is not None:
-                if isinstance(one, FileError):
-                    faults += 1
-                    changes |= {"faults": faults, "fault": f"line {one.line}: {one.cause}"}
-                else:
-                    frames += 1
-                    latest = one
-                    changes |= self._aligned(live, live.feed(one.pose, one.time))
-                if self._clock() > until:
-                    if feed.slips and latest is not None and latest.time is not None:
-                        self._played = min(self._played, latest.time + 1e-6)
-                    break
-        except MocapError as error:
-            self._fail(error)
-            return {}
-        if latest is not None:
-            seconds = latest.time if latest.time is not None else shown.seconds
-            changes |= {"frames": frames, "seconds": seconds, "notes": self._noted()}
-            self._frame = latest.frame
-            if latest.joints is not None:
-                self.posed.emit(latest)
-        return changes
-
-    def _aligned(self, live: LiveAlignment, state: LiveState) -> dict[str, object]:
-        history = self._live.shown.history
-        assert history is not None
-        if state.note is not None:
-            self._notes[state.note] += 1
-        anew = state.note is Note.RESTARTED or state.action != self._action
-        self._action = state.action
-        if anew:
-            history.clear()
-        changes: dict[str, object] = {"now": state}
-        if state.step is not None:
-            history.add(state.step, live.aligner.pose_costs)
-            changes["step"] = state.step
-        elif anew:
-            changes["step"] = None
-        return changes
-
-    def _go(self, shown: LiveShown) -> None:
+    def _go(self, shown: LiveShown, source_frame: int | None) -> None:
         """Move both play heads to where the performer is."""
         sitting, state = self._bridge.sitting, self._bridge.state
         frame = state.frame if shown.step is None else shown.step.reference_frame
-        if self._frame is None:
-            sitting.go_both(frame, state.source_frame)
-        else:
-            sitting.go_both(frame, self._frame)
+        sitting.go_both(frame, state.source_frame if source_frame is None else source_frame)
 
     # -- within
+
+    def _let_go(self) -> None:
+        self._hang_up()
+        self._stream, self._hang_up = None, lambda: None
+        self._live.set(streams=False)
 
     def _wait_for_rate(self) -> None:
         """Wait until a stream tells how fast it comes."""
@@ -366,22 +261,9 @@ class LiveMode(QObject):
             self._prepare(None, self._stream_rate or told or None)
 
     def _forget(self, **changes: object) -> None:
-        self._notes.clear()
-        self._action, self._frame = 0, None
-        self._live.set(
-            now=None,
-            step=None,
-            seconds=None,
-            frames=0,
-            looked=None,
-            notes=(),
-            faults=0,
-            fault="",
-            **changes,
-        )
-
-    def _noted(self) -> tuple[tuple[Note, int], ...]:
-        return tuple((note, self._notes[note]) for note in Note if self._notes[note])
+        blank = LiveShown()
+        names = ("now", "step", "seconds", "frames", "looked", "notes", "faults", "fault")
+        self._live.set(**{name: getattr(blank, name) for name in names}, **changes)
 
     def _follow(self, old: ComparingState, new: ComparingState) -> None:
         other = new.reference is not old.reference
