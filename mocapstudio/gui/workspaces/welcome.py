@@ -52,8 +52,8 @@ class Welcome(QWidget):
         column.setSpacing(10)
         words = (
             self._picture,
-            label("Drop a BVH take here", "heading", "welcome-hint"),
-            label("See where it departs from itself and its context, decide, export.", "muted"),
+            label("Drop a take here", "heading", "welcome-hint"),
+            label("BVH, AMC, C3D, TRC or a table, or a whole session", "muted"),
         )
         for one in words:
             one.setAlignment(Qt.AlignmentFlag.AlignCenter)
