@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -73,7 +74,8 @@ class MarkersDesk(QObject):
         document, first = self._bridge.document, ""
         for take in markers:
             known = next((p.id for p in self._bridge.state.markers if _same(p.take, take)), "")
-            first = first or known or document.open_markers(take)
+            opened = known or document.open_markers(take)
+            first = first or opened
             if take.source is not None:
                 settings.add_recent("files", take.source.path)
         self.show()
@@ -102,12 +104,14 @@ class MarkersDesk(QObject):
 
     def _take_in(self, markers: MarkerTake, partner: bool, solved: Solved) -> None:
         document = self._bridge.document
-        performer = document.open_take(solved.take, partner=partner)
+        # The markers themselves bear the plain name.
+        take = replace(solved.take, name=f"{markers.name} solved")
+        performer = document.open_take(take, partner=partner)
         if not partner:
             document.set_active(performer)
         if markers.source is not None:
             remarks = (_fit(solved), *solved.warnings)
-            self._opening.imports.note_solved(solved.take, markers.source.path, remarks)
+            self._opening.imports.note_solved(take, markers.source.path, remarks)
             settings.add_recent("files", markers.source.path)
         self._opening.opened.emit()
         self._window.switching.show("review")

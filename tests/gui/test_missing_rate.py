@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from made_takes import walking
@@ -45,11 +47,10 @@ def test_several_files_are_asked_for_their_rate_once(hands, tmp_path):
     assert "is no frame rate" in hands.text("rate-wrong")
     hands.type("rate-text", "119.88", enter=False)
     hands.click("rate-ok")
-    hands.see(lambda: hands.shows("markers-dialog"))
-    assert "2 takes" in hands.text("markers-title")
-    hands.click("markers-cancel")
     hands.come_back()
+    hands.see(lambda: len(hands.window.bridge.state.markers) == 2)
     assert not hands.shows("trouble-dialog")
+    assert {one.take.rate for one in hands.window.bridge.state.markers} == {Fraction(120000, 1001)}
     assert hands.window.bridge.state.scene.performers == ()
 
 
@@ -67,8 +68,9 @@ def test_markers_are_compared_as_they_are_with_the_rate_that_was_told(hands, tmp
     hands.window.files.open_paths([rateless(tmp_path / "one.csv")])
     hands.see(lambda: hands.shows("rate-dialog"))
     hands.type("rate-text", "25")
-    hands.see(lambda: hands.shows("markers-dialog"))
-    hands.click("markers-compare")
+    hands.come_back()
+    hands.see(lambda: hands.shows("markers-table"))
+    hands.menu("Markers", "Compare")
     hands.come_back()
     assert hands.window.switching.name == "compare"
     reference = hands.window.switching.front.bridge.state.reference
@@ -83,11 +85,13 @@ def test_markers_are_solved_to_the_take_under_review(hands, walk):
     hands.window.files.open_paths([walk / "body.bvh"])
     hands.see(lambda: hands.window.bridge.state.active == "body")
     hands.window.files.open_paths([walk / "walk.c3d"])
+    hands.see(lambda: hands.shows("markers-table"))
+    hands.click("button-markers-solve")
     hands.see(lambda: hands.shows("markers-dialog"))
     assert hands.find("markers-template", QComboBox).currentText() == "body (open)"
     hands.click("markers-solve")
     hands.come_back()
-    hands.see(lambda: hands.window.bridge.state.active == "walk", 60)
+    hands.see(lambda: hands.window.bridge.state.active == "walk solved", 60)
     solved, body = (p.take for p in reversed(hands.window.bridge.state.scene.performers))
     assert solved.skeleton.names == body.skeleton.names
     assert (solved.rate, solved.frames) == (body.rate, body.frames)

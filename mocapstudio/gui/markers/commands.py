@@ -18,7 +18,7 @@ MARKERS = (
     Command("markers-previous", "&Previous Gap", "Go to the gap before", ("P",), "previous"),
     SEPARATOR,
     *FILLS,
-    Command("markers-fill-all", "Fill &All Short Gaps",
+    Command("markers-fill-all", "Fill All S&hort Gaps",
             "Fill every gap up to the length that stands in the inspector, by the best available",
             ("Shift+A",), "accept"),
     SEPARATOR,

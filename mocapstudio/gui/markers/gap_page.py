@@ -34,7 +34,7 @@ class GapPage(QWidget):
         self._words = label("", "muted", "markers-words", wrap=True)
         self._words.setMinimumHeight(2 * self._words.fontMetrics().lineSpacing() + 4)
         self._words.setAlignment(Qt.AlignmentFlag.AlignTop)
-        self._short = label("", "muted", "markers-short")
+        self._short = label("frames", "muted", "markers-short")
         body = QVBoxLayout(self)
         body.setContentsMargins(12, 10, 12, 10)
         body.setSpacing(7)
@@ -59,6 +59,7 @@ class GapPage(QWidget):
         field.setAlignment(Qt.AlignmentFlag.AlignRight)
         field.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
         field.valueChanged.connect(lambda frames: self._bridge.set(longest=frames))
+        self._longest = field
         row = QHBoxLayout()
         row.setSpacing(6)
         row.addWidget(actions.push_button("markers-fill-all", "Fill all up to"), 1)
@@ -74,7 +75,7 @@ class GapPage(QWidget):
     def _show(self, shown: MarkersShown) -> None:
         self._name.setText(shown.marker or "No marker chosen")
         self._words.setText(_words_of(shown))
-        self._short.setText("frames")
+        self._longest.setValue(shown.longest)
         count = len(self._working.short_gaps())
         self._short.setToolTip(f"{count} gaps of this take are as short")
 
