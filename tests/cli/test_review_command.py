@@ -10,6 +10,9 @@ import time
 from pathlib import Path
 
 import pytest
+from made_takes import walking
+
+from mocapstudio import formats
 
 COMMAND = [sys.executable, "-m", "mocapstudio", "review"]
 
@@ -56,10 +59,22 @@ def test_without_a_display_it_says_so(tmp_path):
     assert len(done.stderr.splitlines()) == 1
 
 
-def test_ctrl_c_ends_the_desk(tmp_path):
+@pytest.mark.parametrize("live", [False, True])
+def test_ctrl_c_ends_the_desk(tmp_path, live):
     if not os.environ.get("DISPLAY"):
         pytest.skip("no display")
-    desk = subprocess.Popen(COMMAND, env=environment(tmp_path), stderr=subprocess.PIPE, text=True)
+    words = []
+    if live:
+        formats.write(walking(1.0), tmp_path / "take.bvh")
+        words = [str(tmp_path / "take.bvh"), "--live", "-"]
+    # Nobody ever closes the pipe that it listens to.
+    desk = subprocess.Popen(
+        COMMAND + words,
+        env=environment(tmp_path),
+        stdin=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
     unsaved = tmp_path / "STATE" / "mocapstudio" / "unsaved"
     ready = time.monotonic() + 60
     while not list(unsaved.glob("*.journal")) and time.monotonic() < ready:

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from made_takes import reaching, walking
 
 from mocapstudio import formats
@@ -47,6 +49,34 @@ def test_a_repeated_and_a_late_frame_change_nothing(live: LiveAlignment) -> None
     assert disturbed[20].step == disturbed[21].step == wanted[19].step
     assert [s.step for s in disturbed[:20] + disturbed[22:]] == [s.step for s in wanted]
     assert [s.frame for s in disturbed] == list(range(62))
+
+
+@settings(max_examples=15, deadline=None)
+@given(again=st.lists(st.sampled_from(["", "", "repeated", "late"]), min_size=40, max_size=40))
+def test_frames_that_come_again_never_count(again: list[str]) -> None:
+    reference = reference_of(walking(4.0, seed=1))
+    times = [i / 30 for i in range(len(again))]
+    wanted = [s.step for s in fed(LiveAlignment(OnlineAligner(reference)), times)]
+    sent: list[float] = []
+    for at, kind in enumerate(again):
+        sent.append(times[at])
+        if kind:
+            sent.append(times[at] if kind == "repeated" else times[max(at - 3, 0)])
+    states = fed(LiveAlignment(OnlineAligner(reference)), sent)
+    assert [s.step for s in states if s.note is None] == wanted
+    assert len(states) - len(wanted) == sum(map(bool, again))
+
+
+@settings(max_examples=15, deadline=None)
+@given(gaps=st.lists(st.integers(1, 6), min_size=25, max_size=25))
+def test_whatever_few_frames_are_missing_she_is_found(gaps: list[int]) -> None:
+    live = LiveAlignment(OnlineAligner(reference_of(walking(4.0, seed=1))))
+    frames = np.minimum(np.cumsum(gaps), 118)
+    frames = np.unique(np.concatenate([[0, 1, 2], frames + 2]))
+    states = fed(live, (frames / 30).tolist())
+    found = np.array([s.step.reference_frame for s in states if s.step])
+    assert len(found) == len(frames)
+    assert np.abs(found - frames).max() <= 4
 
 
 def test_frames_that_are_missing_are_bridged(live: LiveAlignment) -> None:

@@ -261,6 +261,14 @@ def test_frames_come_by_a_pipe(hands, listening, pipe):
     assert live.shown.step.misalignment < -0.1
 
 
+def test_nothing_listens_after_it_has_hung_up(hands, listening, pipe):
+    pipe.send(line(0, 0.0))
+    hands.see(lambda: "lines" in {one.name for one in threading.enumerate()})
+    listening.live_mode.hang_up()
+    assert not listening.live.shown.on
+    hands.see(lambda: "lines" not in {one.name for one in threading.enumerate()})
+
+
 def test_another_skeleton_by_the_pipe_is_refused(hands, listening, pipe):
     strange = json.dumps({"time": 0.0, "joints": {"tail": [0, 0, 0, 1]}}).encode() + b"\n"
     pipe.send(*[strange] * 9)
