@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -11,8 +11,9 @@ from PySide6.QtCore import QObject
 from mocapstudio.cleaning.parameters import CALIBRATED, DetectionParameters
 from mocapstudio.gui import settings
 from mocapstudio.gui.document import DocumentBridge
-from mocapstudio.gui.jobs import Job, Jobs
+from mocapstudio.gui.jobs import Jobs
 from mocapstudio.gui.messages import Messages
+from mocapstudio.gui.worker import Worker
 from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.errors import SkeletonMismatchError
 from mocapstudio.motion.progress import Progress
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 _KEY = "analysis"
 
 
-class Analysing(QObject):
+class Analysing(Worker):
     """Analyses a take when it comes under review, and again when what it depends on changes.
 
     Parameters
@@ -48,10 +49,8 @@ class Analysing(QObject):
         messages: Messages,
         parent: QObject | None = None,
     ) -> None:
-        super().__init__(parent)
-        self._bridge, self._jobs, self._messages = bridge, jobs, messages
+        super().__init__(bridge, jobs, messages, parent)
         self._done: dict[str, tuple[object, ...]] = {}
-        self._job: Job | None = None
         bridge.changed.connect(self._follow)
 
     def again(self) -> None:
@@ -108,15 +107,8 @@ class Analysing(QObject):
             if parameters.mode == CALIBRATED and self._bridge.ui.learning:
                 self._refine(performer, parameters, analysis.context)
 
-        self._job = self._jobs.start(
-            f"Analysing {take.name}",
-            work,
-            finished,
-            lambda error: self._messages.complain(error, f"{take.name} could not be analysed"),
-            key=_KEY,
-        )
-        self._job.ended.connect(self._tell)
-        self._tell()
+        title, failed = f"Analysing {take.name}", f"{take.name} could not be analysed"
+        self._analyse(title, work, finished, failed)
 
     def toggle_learning(self) -> None:
         """Learn from the context, or leave the map as it is first drawn."""
@@ -149,14 +141,17 @@ class Analysing(QObject):
             document.finish_analysis(performer, generation, current)
             self._messages.tell(f"{take.name}: map refined, {len(current.flags)} flags.")
 
-        self._job = self._jobs.start(
-            "Learning from the context",
-            work,
-            finished,
-            lambda error: self._messages.complain(error, "Nothing could be learnt"),
-            key=_KEY,
-        )
-        self._job.ended.connect(self._tell)
+        self._analyse("Learning from the context", work, finished, "Nothing could be learnt")
+
+    def _analyse(
+        self,
+        title: str,
+        work: Generator[Progress, None, Analysis],
+        finished: Callable[[Analysis], None],
+        failed: str,
+    ) -> None:
+        job = self._have_done(title, work, finished, failed, _KEY)
+        job.ended.connect(self._tell)
         self._tell()
 
     def _tell(self) -> None:

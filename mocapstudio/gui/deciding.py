@@ -11,6 +11,7 @@ from mocapstudio.cleaning.model import Flag, Proposal
 from mocapstudio.gui.document import DocumentBridge
 from mocapstudio.gui.jobs import Jobs
 from mocapstudio.gui.messages import Messages
+from mocapstudio.gui.worker import Worker
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.progress import Progress
 from mocapstudio.review.model import Verdict
@@ -37,7 +38,7 @@ class Order(Protocol):
         """Id of the next open flag after those."""
 
 
-class Deciding(QObject):
+class Deciding(Worker):
     """Turns commands into intents on the selected flags.
 
     Parameters
@@ -65,8 +66,8 @@ class Deciding(QObject):
         messages: Messages,
         parent: QObject | None = None,
     ) -> None:
-        super().__init__(parent)
-        self._bridge, self._order, self._jobs, self._messages = bridge, order, jobs, messages
+        super().__init__(bridge, jobs, messages, parent)
+        self._order = order
 
     def go(self, step: int) -> None:
         """Go to the next flag, or the previous one."""
@@ -96,12 +97,12 @@ class Deciding(QObject):
                 document.set_proposal(flag, None, proposal)
             self._decide(ids, lambda: document.accept(ids))
 
-        self._jobs.start(
+        self._have_done(
             f"Preparing {len(missing)} repairs",
             _proposing(analysis, missing, document.kept(state.active)),
             done,
-            lambda error: self._messages.complain(error, "The flags could not be accepted"),
-            key="accept",
+            "The flags could not be accepted",
+            "accept",
         )
 
     def reject(self) -> None:

@@ -3,47 +3,23 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Generator
+from collections.abc import Generator
 from pathlib import Path
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import Signal
 
 from mocapstudio.gui import settings
-from mocapstudio.gui.document import DocumentBridge
-from mocapstudio.gui.jobs import Jobs
-from mocapstudio.gui.messages import Messages
+from mocapstudio.gui.worker import Worker
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.progress import Progress
 from mocapstudio.review.session_file import SUFFIX, save
 
 
-class HandingOver(QObject):
-    """Writes what the sitting has come to.
-
-    Parameters
-    ----------
-    bridge
-        The document's door.
-    jobs
-        Runs the writing.
-    messages
-        Is told where the file lies, or what went wrong.
-    parent
-        Qt's parent.
-    """
+class HandingOver(Worker):
+    """Writes what the sitting has come to, and tells where the file lies."""
 
     about_to_save = Signal()
     """Emitted before the session is written: what else lasts can be handed to the document."""
-
-    def __init__(
-        self,
-        bridge: DocumentBridge,
-        jobs: Jobs,
-        messages: Messages,
-        parent: QObject | None = None,
-    ) -> None:
-        super().__init__(parent)
-        self._bridge, self._jobs, self._messages = bridge, jobs, messages
 
     def clean_path(self) -> Path:
         """Return the name offered for the clean take: beside its source, ``_clean`` added."""
@@ -86,7 +62,9 @@ class HandingOver(QObject):
                 changed = f"{count} changed spans" if count > 1 else "1 changed span"
             self._messages.tell(f"Exported {path.name}: {changed}.", path)
 
-        self._run(f"Exporting {path.name}", work(), done, f"{path.name} could not be exported")
+        self._have_done(
+            f"Exporting {path.name}", work(), done, f"{path.name} could not be exported"
+        )
 
     def save(self, path: Path) -> bool:
         """Write the session; tell whether that went well.
@@ -117,18 +95,4 @@ class HandingOver(QObject):
         def done(_: object) -> None:
             self._messages.tell(f"Wrote {path.name}.", path)
 
-        self._run(f"Writing {path.name}", work(), done, "The report could not be written")
-
-    def _run(
-        self,
-        title: str,
-        work: Generator[Progress, None, object],
-        done: Callable[..., None],
-        doing: str,
-    ) -> None:
-        self._jobs.start(
-            title,
-            work,
-            done,
-            lambda error: self._messages.complain(error, doing),
-        )
+        self._have_done(f"Writing {path.name}", work(), done, "The report could not be written")

@@ -16,6 +16,7 @@ from mocapstudio.gui.jobs import Jobs
 from mocapstudio.gui.messages import Link, Messages
 from mocapstudio.gui.reading import Read, reading, reading_context
 from mocapstudio.gui.trouble import Trouble
+from mocapstudio.gui.worker import Worker
 from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.recording import same_recording
 from mocapstudio.motion.take import Take
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from mocapstudio.review.document import Document
 
 
-class Opening(QObject):
+class Opening(Worker):
     """Opens what the user names.
 
     Parameters
@@ -66,8 +67,7 @@ class Opening(QObject):
         messages: Messages,
         parent: QObject | None = None,
     ) -> None:
-        super().__init__(parent)
-        self._bridge, self._jobs, self._messages = bridge, jobs, messages
+        super().__init__(bridge, jobs, messages, parent)
         self._asked = AS_THEY_ARE
         self.imports = Imports(bridge, self)
 
@@ -123,12 +123,12 @@ class Opening(QObject):
             self._use_context(read, wanted)
             self._ask_rate(read.rateless, lambda: self.set_context(wanted))
 
-        self._jobs.start(
+        self._have_done(
             "Reading the context",
             reading_context(wanted, doing, self._bridge.state.take, self.manner),
             done,
-            lambda error: self._messages.complain(error, doing),
-            key="context",
+            doing,
+            "context",
         )
 
     def open_session(self, path: Path) -> None:
@@ -138,12 +138,12 @@ class Opening(QObject):
             yield Progress(0.0, f"opening {path.name}")
             return load(path)
 
-        self._jobs.start(
+        self._have_done(
             f"Opening {path.name}",
             work(),
             self.session_read.emit,
-            lambda error: self._messages.complain(error, "The session could not be opened"),
-            key="session",
+            "The session could not be opened",
+            "session",
         )
 
     def greet(self, document: Document) -> None:
@@ -171,12 +171,7 @@ class Opening(QObject):
             done(read)
             self._ask_rate(read.rateless, lambda: self._read(read.rateless, title, doing, done))
 
-        self._jobs.start(
-            title,
-            reading(paths, doing, self.manner),
-            arrived,
-            lambda error: self._messages.complain(error, doing),
-        )
+        self._have_done(title, reading(paths, doing, self.manner), arrived, doing)
 
     def _ask_rate(self, files: Sequence[Path], again: Callable[[], object]) -> None:
         """Ask for the rate that files do not state, remember it for them, and go on."""

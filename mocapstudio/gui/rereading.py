@@ -15,6 +15,7 @@ from mocapstudio.gui.imports import Imports, imported
 from mocapstudio.gui.jobs import Jobs
 from mocapstudio.gui.messages import Messages
 from mocapstudio.gui.opening import Opening
+from mocapstudio.gui.worker import Worker
 from mocapstudio.motion.errors import NoRateError
 from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.motion.progress import Progress
@@ -24,7 +25,7 @@ from mocapstudio.review.model import Performer, Sitting
 Reading = tuple[list[Recording], ImportReport, ReadOptions]
 
 
-class Rereading(QObject):
+class Rereading(Worker):
     """Puts other readings of files in the place of those that are open.
 
     Parameters
@@ -49,8 +50,7 @@ class Rereading(QObject):
         opening: Opening,
         parent: QObject | None = None,
     ) -> None:
-        super().__init__(parent)
-        self._bridge, self._jobs, self._messages = bridge, jobs, messages
+        super().__init__(bridge, jobs, messages, parent)
         self._opening = opening
 
     @property
@@ -66,6 +66,9 @@ class Rereading(QObject):
             if one.take.source is not None and one.take.source.path.resolve() == wanted
         )
         edited = tuple(one for one in markers if _touched(sitting, one))
+        if self._imports.solved(path):
+            # What was solved from markers stays.
+            return edited
         own = tuple(one.id for one in self._performers(path) if _touched(sitting, one.id))
         return (*own, *edited)
 
@@ -101,14 +104,12 @@ class Rereading(QObject):
             yield Progress(0.0, f"reading {path.name}")
             return read()
 
-        self._jobs.start(
+        self._have_done(
             f"Reading {path.name}",
             work(),
             done,
-            lambda error: self._messages.complain(
-                error, f"{path.name} could not be read like this"
-            ),
-            key=f"read {path}",
+            f"{path.name} could not be read like this",
+            f"read {path}",
         )
 
     def _note(self, reading: Reading) -> None:
