@@ -26,8 +26,8 @@ class PooledDistances:
     """
 
     values: Floats
-    reference: tuple[int, int]
-    source: tuple[int, int]
+    reference: tuple[float, float]
+    source: tuple[float, float]
 
 
 def pooled_distances(

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from hands import CTRL
 from made_takes import paced, walking
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
 
 from mocapstudio.comparison.parameters import ComparisonParameters
 
@@ -86,3 +88,22 @@ def test_a_comparison_is_saved_with_the_session_and_opened_again(hands, compare,
     assert state().parameters.true_speed
     assert state().frame == 33
     assert not hands.window.bridge.state.dirty
+
+
+def test_the_matrix_shows_costs_and_the_online_path(hands, compare):
+    hands.press("X")
+    plot = hands.find("compare-matrix-view")
+    before = plot.grab().toImage()
+    hands.choose("matrix-picture", "accumulated cost")
+    hands.see(lambda: plot.grab().toImage() != before)
+    hands.choose("matrix-kind", "online")
+    hands.see(lambda: compare.desk.matrix.plot.scales[0].stretch.length > 100)
+    hands.see(lambda: not hands.window.jobs.running and not hands.shows("matrix-hint"), 60)
+    at = plot.place_of(120, 100)
+    QTest.mouseClick(plot, Qt.MouseButton.LeftButton, pos=at.toPoint())
+    state = compare.bridge.state
+    assert state.frame > 0
+    nearest = state.linked.nearest(state.frame, state.source_frame)
+    assert abs(nearest[0] - state.frame) < 15, "both alignments are of one movement"
+    hands.choose("matrix-kind", "after the fact")
+    assert hands.find("matrix-kind").currentText() == "after the fact"

@@ -9,6 +9,7 @@ from typing import Any
 from PySide6.QtCore import QObject, Signal
 
 from mocapstudio.review.comparing import Comparing, ComparingState
+from mocapstudio.review.matrix_model import Picture
 
 
 class Alignment(StrEnum):
@@ -49,6 +50,8 @@ class CompareUi:
         Whether the form of parameters stands in the place of the performances.
     matrix
         Whether the pose distances stand in the place of the table of segments.
+    matrix_online, matrix_picture
+        Whether it is that of the online alignment, and what of it is drawn.
     multiples
         Whether the pictures show all sources instead of the chosen one.
     """
@@ -65,6 +68,8 @@ class CompareUi:
     follow: bool = True
     parameters: bool = False
     matrix: bool = False
+    matrix_online: bool = False
+    matrix_picture: Picture = Picture.DISTANCES
     multiples: bool = False
 
 

@@ -19,6 +19,7 @@ from mocapstudio.gui.compare.segments_table import SegmentsView
 from mocapstudio.gui.compare.stage import StageView
 from mocapstudio.gui.compare.transport import CompareTransport
 from mocapstudio.gui.compare.weights_view import WeightsView
+from mocapstudio.gui.jobs import Jobs
 from mocapstudio.gui.widgets.parts import header, panel
 
 
@@ -29,11 +30,15 @@ class CompareDesk(QWidget):
     ----------
     bridge, live
         Where state comes from and intents go.
+    jobs
+        Runs what takes long.
     actions
         The commands behind the buttons.
     """
 
-    def __init__(self, bridge: CompareBridge, live: LiveBridge, actions: Actions) -> None:
+    def __init__(
+        self, bridge: CompareBridge, live: LiveBridge, jobs: Jobs, actions: Actions
+    ) -> None:
         super().__init__()
         self._bridge, self._live = bridge, live
         self.performances = PerformancesView(bridge, actions)
@@ -50,7 +55,7 @@ class CompareDesk(QWidget):
         self.segments = SegmentsView(bridge, actions)
         self._side = QStackedWidget()
         self._side.addWidget(self.segments)
-        self.matrix = MatrixView(bridge)
+        self.matrix = MatrixView(bridge, jobs)
         self._side.addWidget(self.matrix)
         self._side.addWidget(WeightsView(bridge, live, actions))
         self._below = QStackedWidget()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QImage, QPainter, QPen, QPolygonF
 
@@ -12,6 +11,7 @@ from mocapstudio.gui import theme as themes
 from mocapstudio.gui.compare.bridge import CompareBridge
 from mocapstudio.gui.compare.live_bridge import LiveBridge
 from mocapstudio.gui.compare.live_plot import LEFT, LivePlot
+from mocapstudio.gui.compare.matrix_plot import colours_of_distances
 from mocapstudio.gui.plots import colours
 from mocapstudio.gui.plots.axes import small_font
 from mocapstudio.gui.plots.ticks import time_ticks
@@ -113,16 +113,3 @@ class LiveMatrix(LivePlot):
             if tick.label:
                 y = self.y_of(tick.frame)
                 p.drawText(QRectF(0, y - 7, LEFT - 5, 14), _RIGHT, tick.label)
-
-
-def colours_of_distances() -> np.ndarray[tuple[int], np.dtype[np.uint32]]:
-    """(256,) packed colours: dark is alike in both themes."""
-    look = themes.current()
-    table = pg.colormap.get(look.colormap).map(np.linspace(0, 1, 256), mode="byte")[:, :3]
-    table = table.astype(np.uint32)
-    if look.name == "light":
-        table = table[::-1]
-    packed: np.ndarray[tuple[int], np.dtype[np.uint32]] = (
-        0xFF000000 | table[:, 0] << 16 | table[:, 1] << 8 | table[:, 2]
-    ).astype(np.uint32)
-    return packed

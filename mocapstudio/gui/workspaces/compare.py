@@ -16,8 +16,8 @@ from mocapstudio.gui.compare.bridge import CompareBridge, CompareUi
 from mocapstudio.gui.compare.desk import CompareDesk
 from mocapstudio.gui.compare.empty import EmptyCompare
 from mocapstudio.gui.compare.flagging import Flagging
-from mocapstudio.gui.compare.keeping import Keeping
 from mocapstudio.gui.compare.inviting import Inviting
+from mocapstudio.gui.compare.keeping import Keeping
 from mocapstudio.gui.compare.live_answering import LiveAnswering
 from mocapstudio.gui.compare.live_bridge import LiveBridge, LiveShown
 from mocapstudio.gui.compare.live_mode import LiveMode
@@ -61,7 +61,7 @@ class CompareWorkspace(Workspace):
         self.live_mode: LiveMode = LiveMode(
             self.bridge, self.live, window.jobs, window.messages, self
         )
-        self.desk = CompareDesk(self.bridge, self.live, window.actions_)
+        self.desk = CompareDesk(self.bridge, self.live, window.jobs, window.actions_)
         self.empty = EmptyCompare(window.actions_)
         self.answering = Answering(window, self)
         self.live_answering = LiveAnswering(window, self)
