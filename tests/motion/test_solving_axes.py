@@ -120,6 +120,6 @@ def test_elbows_and_knees_bend_one_way(data: Path) -> None:
 def test_limbs_are_told_whatever_comes_after_the_wrist(data: Path) -> None:
     (take,), _ = formats.read(data / "cmu_same_take_3_formats/02_01.bvh")
     names = take.skeleton.names
-    parts = segments(take.skeleton, template_of(take).standing_pose[0])
+    parts = segments(take.skeleton, template_of(take).standing_pose[0], {})
     told = [names[parts[f"left {p}"].joint] for p in ("clavicle", "upper arm", "forearm", "hand")]
     assert told == ["LeftShoulder", "LeftArm", "LeftForeArm", "LeftHand"]

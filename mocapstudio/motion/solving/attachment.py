@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.motion.solving.segments import Segment, segments
-from mocapstudio.motion.solving.sites import LEG, SURE, Site, site_of
+from mocapstudio.motion.solving.sites import LEG, Site, site_of
 from mocapstudio.motion.solving.template import Template
 
 Array = NDArray[np.float64]
@@ -31,14 +31,14 @@ class Attachment:
         (M,) the joint that carries each.
     offsets
         (M, 3) metres in that joint's frame: where it is expected.
-    precisions
-        (M, 3, 3) inverse square metres in that joint's frame: how surely it is there.
+    spreads
+        (M,) metres: how far from there it may well be.
     """
 
     markers: NDArray[np.int64]
     joints: NDArray[np.int64]
     offsets: Array
-    precisions: Array
+    spreads: Array
 
     def with_marker(self, marker: int, joint: int, offset: Array) -> Attachment:
         """Add a marker whose place was measured, not known."""
@@ -46,7 +46,7 @@ class Attachment:
             np.append(self.markers, marker),
             np.append(self.joints, joint),
             np.vstack([self.offsets, offset]),
-            np.concatenate([self.precisions, np.eye(3)[None] / _UNKNOWN**2]),
+            np.append(self.spreads, _UNKNOWN),
         )
 
     def scaled(self, factor: float) -> Attachment:
@@ -67,7 +67,7 @@ def attach_by_name(take: MarkerTake, template: Template, seen: Sequence[int]) ->
         Markers that have positions.
     """
     positions, world = template.standing_pose
-    parts = segments(template.skeleton, positions)
+    parts = segments(template.skeleton, positions, template.hinges)
     size = _leg(parts) / LEG
     rows = []
     for marker in seen:
@@ -78,13 +78,12 @@ def attach_by_name(take: MarkerTake, template: Template, seen: Sequence[int]) ->
         place = _place(segment, known[1], known[0], size)
         joint = segment.joint_at(known[1].along)
         offset = world[joint].T @ (place - positions[joint])
-        precision = world[joint].T @ _precision(segment, known[1], size) @ world[joint]
-        rows.append((marker, joint, offset, precision))
+        rows.append((marker, joint, offset, known[1].spread * size))
     return Attachment(
         np.array([row[0] for row in rows], dtype=np.int64),
         np.array([row[1] for row in rows], dtype=np.int64),
         np.array([row[2] for row in rows]).reshape(-1, 3),
-        np.array([row[3] for row in rows]).reshape(-1, 3, 3),
+        np.array([row[3] for row in rows]),
     )
 
 
@@ -99,14 +98,6 @@ def _place(segment: Segment, site: Site, side: str, size: float) -> Array:
         outer = -outer
     aside = outer * segment.outer + site.front * segment.front + site.up * segment.up
     return np.asarray(segment.start + site.along * segment.bone + size * aside)
-
-
-def _precision(segment: Segment, site: Site, size: float) -> Array:
-    precision = np.eye(3) / (site.spread * size) ** 2
-    if site.sure:
-        along = segment.outer if site.sure == "outer" else segment.front
-        precision += np.outer(along, along) * ((SURE * size) ** -2 - (site.spread * size) ** -2)
-    return np.asarray(precision)
 
 
 def _leg(parts: dict[str, Segment]) -> float:

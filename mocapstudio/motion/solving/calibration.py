@@ -23,7 +23,7 @@ _OF_ONE = 0.025
 """Share that one bone may well differ from the others."""
 _SHORT = 5e-3
 """Metres below which a bone's length is not looked for."""
-_INDEPENDENT = 10
+_INDEPENDENT = 5
 """Frames that tell as much as all do together: skin slides alike in many of them."""
 _GROWTH = 0.15
 """Share by which lengths change in one step at most."""
@@ -56,7 +56,7 @@ def calibrate(body: Body, pose: Pose, seen: Seen, rounds: int) -> tuple[Body, Po
     """Take Gauss-Newton steps of markers' places, bone lengths and the poses of K frames.
 
     Bones left and right keep one proportion. What the markers do not tell stays near where the
-    body has it: places by the attachment's precisions, lengths near the template's proportions.
+    body has it: places by the attachment's spreads, lengths near the template's proportions.
 
     Parameters
     ----------
@@ -144,13 +144,10 @@ def _by_unknowns(body: Body, pose: Pose, unknowns: _Unknowns) -> Array:
 
 
 def _add_priors(matrix: Array, right: Array, body: Body, expected: Array, lengths: Array) -> None:
-    markers = len(expected)
-    for at, surely in enumerate(body.attachment.precisions):
-        own = slice(3 * at, 3 * at + 3)
-        right[own] -= surely @ (body.attachment.offsets[at] - expected[at])
-        matrix[own, own] += surely
-    precision = np.full(len(lengths), _OF_ONE**-2.0)
-    precision[0] = _OVERALL**-2.0
-    right[3 * markers :] -= precision * lengths
-    rest = np.arange(3 * markers, len(matrix))
-    matrix[rest, rest] += precision
+    spreads = np.repeat(body.attachment.spreads, 3)
+    precision = np.concatenate(
+        [spreads**-2.0, [_OVERALL**-2.0], np.full(len(lengths) - 1, _OF_ONE**-2.0)]
+    )
+    away = np.concatenate([(body.attachment.offsets - expected).ravel(), lengths])
+    right -= precision * away
+    matrix[np.diag_indices_from(matrix)] += precision

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,9 @@ _CHAINS = {
     "leg": ("hip", "thigh", "shank", "foot"),
 }
 _CALLED = {"hand": "wrist", "foot": "ankle"}
+_ABOVE = {"upper arm": "forearm", "thigh": "shank"}
+_SIDEWAYS = 0.5
+"""Cosine from which on a hinge counts as sideways."""
 _MARGIN = 0.05
 """Share of a bone beyond a joint in it, from where on a marker is carried by that joint."""
 _POINT = 1e-4
@@ -40,7 +44,7 @@ class Segment:
     front, outer
         (3,) unit vectors at right angles to the bone: to the front (the thumb's side of an arm),
         and away from the middle of the body with the limb hanging down. For trunk and feet the
-        body's own forward and sideways.
+        body's own forward and sideways. Above an elbow or a knee sideways is along its hinge.
     up
         (3,) unit vector.
     """
@@ -59,7 +63,9 @@ class Segment:
         return begun[-1] if begun else self.joint
 
 
-def segments(skeleton: Skeleton, positions: Array) -> dict[str, Segment]:
+def segments(
+    skeleton: Skeleton, positions: Array, hinges: Mapping[int, Array]
+) -> dict[str, Segment]:
     """Return the parts that can be told, by name: ``"pelvis"``, ``"left upper arm"``, ….
 
     Parameters
@@ -68,6 +74,8 @@ def segments(skeleton: Skeleton, positions: Array) -> dict[str, Segment]:
         J joints.
     positions
         (J, 3) metres: a standing pose, Y up.
+    hinges
+        Axes (3,) in the world of that pose of joints that turn about one only.
     """
     parts = topology(skeleton)
     chains = {
@@ -80,9 +88,9 @@ def segments(skeleton: Skeleton, positions: Array) -> dict[str, Segment]:
     for name, chain in chains.items():
         side = name.split()[0]
         for part, joint in chain.items():
-            found[f"{side} {part}"] = _limb_segment(
-                skeleton, positions, joint, chain, part, side, axes
-            )
+            segment = _limb_segment(skeleton, positions, joint, chain, part, side, axes)
+            hinge = hinges.get(chain.get(_ABOVE.get(part, ""), -1))
+            found[f"{side} {part}"] = segment if hinge is None else _aligned(segment, hinge)
     found |= _trunk(skeleton, parts, positions, chains, axes)
     return found
 
@@ -180,6 +188,19 @@ def _limb_segment(
     outer = np.cross(front, direction) * (1.0 if side == "left" else -1.0)
     further = _between(skeleton, positions, joint, order[at + 1]) if at + 1 < len(order) else ()
     return Segment(joint, start, bone, front, outer, up, further)
+
+
+def _aligned(segment: Segment, hinge: Array) -> Segment:
+    """Turn a segment's sideways onto the hinge below it, unless that lies far from sideways."""
+    direction = segment.bone / max(float(np.linalg.norm(segment.bone)), _POINT)
+    across = hinge - direction * (direction @ hinge)
+    length = float(np.linalg.norm(across))
+    along = float(across @ segment.outer)
+    if abs(along) < max(_SIDEWAYS * length, _POINT):
+        return segment
+    outer = across * np.sign(along) / length
+    front = np.cross(outer, direction)
+    return replace(segment, outer=outer, front=front * np.sign(front @ segment.front))
 
 
 def _between(

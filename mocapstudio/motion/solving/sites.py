@@ -13,8 +13,8 @@ from mocapstudio.motion.marker_labels import bare, split_side
 
 LEG = 0.82
 """Metres from hip to ankle of the body that the sites are given for."""
-SURE = 0.012
-"""Metres that a marker is off from a landmark felt through the skin."""
+LANDMARK = 0.015
+"""Metres that a marker is off from bone felt through the skin, at the end of a segment."""
 
 
 @dataclass(frozen=True)
@@ -31,10 +31,6 @@ class Site:
         Metres from there.
     spread
         Metres: how far off a marker of that name usually is (standard deviation).
-    sure
-        The direction, ``"outer"`` or ``"front"``, in which it is off by `SURE` only: what is
-        stuck on knee, ankle or wrist sits on the axis of the joint, what is stuck on the
-        breastbone in the middle.
     """
 
     segment: str
@@ -43,7 +39,6 @@ class Site:
     front: float = 0.0
     up: float = 0.0
     spread: float = 0.03
-    sure: str = ""
 
 
 # What a label without side and punctuation starts with, and the site. The first that fits counts.
@@ -66,31 +61,37 @@ _SIDED = (
     (r"psh$|pshv", Site("clavicle", 0, 0.0, -0.05, 0.0)),
     (r"sho|shd|acr", Site("clavicle", 0, -0.02, 0.0, 0.045)),
     (r"bac|bak|scap|tricepback", Site("chest", 0, 0.085, -0.10, -0.03, 0.05)),
-    (r"lel|elbout|elbowout|elbowlat|elblat|lelb|lelbow", Site("upper arm", 1.0, 0.035)),
-    (r"mel|elbin|elbowin|elbowmed|elbmed|melb|melbow", Site("upper arm", 1.0, -0.035)),
-    (r"elb", Site("upper arm", 1.0, 0.045)),
+    (
+        r"lel|elbout|elbowout|elbowlat|elblat|lelb|lelbow",
+        Site("upper arm", 1.0, 0.035, spread=LANDMARK),
+    ),
+    (
+        r"mel|elbin|elbowin|elbowmed|elbmed|melb|melbow",
+        Site("upper arm", 1.0, -0.035, spread=LANDMARK),
+    ),
+    (r"elb", Site("upper arm", 1.0, 0.045, spread=LANDMARK)),
     (r"upa|ua\d|uarm|upperarm|tricep|bicep|^arm", Site("upper arm", 0.5, 0.05, spread=0.05)),
     (
         r"wra|lwr|wristin|wrthumb|wristrad|faradius|radius",
-        Site("forearm", 1.0, 0.03, 0.05, sure="outer"),
+        Site("forearm", 1.0, 0.03, 0.05, spread=LANDMARK),
     ),
     (
         r"wrb|mwr|wristout|wrpinky|wristuln|faulna|ulna",
-        Site("forearm", 1.0, 0.03, -0.055, sure="outer"),
+        Site("forearm", 1.0, 0.03, -0.055, spread=LANDMARK),
     ),
     (r"wr", Site("forearm", 1.0, 0.02, spread=0.04)),
     (r"frm|fore|fa\D|frarm|lowerarm", Site("forearm", 0.5, 0.03, spread=0.05)),
     (r"fin|hand|hnd|ind|knu|mcp", Site("hand", 0.08, 0.028, spread=0.04)),
     (r"thm|thumb", Site("hand", 0.05, 0.0, 0.05, spread=0.04)),
     (r"pnk|pinky", Site("hand", 0.06, 0.01, -0.04, spread=0.04)),
-    (r"mkne|mfc|kneemed|kneein|medknee", Site("thigh", 1.0, -0.05, sure="front")),
-    (r"kne|lfc|lkne", Site("thigh", 1.0, 0.06, sure="front")),
+    (r"mkne|mfc|kneemed|kneein|medknee", Site("thigh", 1.0, -0.05, spread=LANDMARK)),
+    (r"kne|lfc|lkne", Site("thigh", 1.0, 0.06, spread=LANDMARK)),
     (
         r"thi|th\d|thigh|upperleg|upleg|postfem|antfem",
         Site("thigh", 0.55, 0.085, -0.01, spread=0.06),
     ),
-    (r"mank|mmal|anklemed|anklein|medankle|mma", Site("shank", 1.0, -0.04, sure="front")),
-    (r"ank|lmal|mal|lank", Site("shank", 1.0, 0.045, sure="front")),
+    (r"mank|mmal|anklemed|anklein|medankle|mma", Site("shank", 1.0, -0.04, spread=LANDMARK)),
+    (r"ank|lmal|mal|lank", Site("shank", 1.0, 0.045, spread=LANDMARK)),
     (
         r"tib|tb\d|shn|shin|shank|sh\d|posttib|anttib|lowerleg",
         Site("shank", 0.45, 0.07, -0.01, spread=0.06),
@@ -104,11 +105,11 @@ _MIDDLE = (
     (r"midhip|midpelvis", Site("pelvis", spread=0.02)),
     (r"midasi", Site("pelvis", 0, 0, 0.065, 0.07)),
     (r"midpsi|sac|mwt|waistback|hipsback", Site("pelvis", 0, 0, -0.12, 0.08)),
-    (r"c7", Site("chest", 0, 0, -0.05, 0.075, sure="outer")),
+    (r"c7", Site("chest", 0, 0, -0.05, 0.075)),
     (r"t10|t8|t12|spinelow|backl", Site("chest", 0, 0, -0.095, -0.14, 0.04)),
     (r"t2|t3|t4|t5|backr|spinetop", Site("chest", 0, 0, -0.10, -0.03, 0.04)),
-    (r"clav|jug|ij|chesttop", Site("chest", 0, 0, 0.08, 0.0, sure="outer")),
-    (r"strn|ster|xiph|chest", Site("chest", 0, 0, 0.125, -0.17, 0.04, sure="outer")),
+    (r"clav|jug|ij|chesttop", Site("chest", 0, 0, 0.08, 0.0)),
+    (r"strn|ster|xiph|chest", Site("chest", 0, 0, 0.125, -0.17, 0.04)),
     (r"neck|nck", Site("chest", spread=0.04)),
     (r"forehead|fhd|headfront|nose|nas", Site("head", 0, 0, 0.11, 0.10, 0.05)),
     (r"(headtop|tophead|head|hed)$", Site("head", 0, 0, 0, 0.18, 0.06)),

@@ -72,7 +72,7 @@ class Template:
         found = {
             j: _STIFF["spine"] for limb in joints.limbs if limb.name in _TRUNK for j in limb.joints
         }
-        for name, part in segments(self.skeleton, self.standing_pose[0]).items():
+        for name, part in segments(self.skeleton, self.standing_pose[0], {}).items():
             kind = name.removeprefix("left ").removeprefix("right ")
             if kind in _STIFF and part.joint not in found:
                 found[part.joint] = _STIFF[kind]
@@ -81,18 +81,27 @@ class Template:
     @cached_property
     def bends(self) -> dict[int, float]:
         """Knees and elbows that are hinges, with the sign of the angle by which they bend."""
-        positions, world = self.standing_pose
-        found = {}
-        for name, part in segments(self.skeleton, positions).items():
+        hinges, found = self.hinges, {}
+        for name, part in segments(self.skeleton, self.standing_pose[0], {}).items():
             ahead = _BENDS.get(name.removeprefix("left ").removeprefix("right "))
-            parent = self.skeleton.parents[part.joint]
-            if ahead is None or len(self.axes[part.joint]) != 1 or parent < 0:
+            if ahead is None or part.joint not in hinges:
                 continue
-            swing = np.cross(world[parent] @ self.axes[part.joint][0], part.bone)
+            swing = np.cross(hinges[part.joint], part.bone)
             told = float(swing @ part.front) / max(float(np.linalg.norm(part.bone)), 1e-9)
             if abs(told) > _TOLD:
                 found[part.joint] = float(np.sign(told)) * ahead
         return found
+
+    @property
+    def hinges(self) -> dict[int, Array]:
+        """The axis (3,) in the world of the standing pose of every joint with only one."""
+        _, world = self.standing_pose
+        parents = self.skeleton.parents
+        return {
+            joint: world[parents[joint]] @ axes[0]
+            for joint, axes in enumerate(self.axes)
+            if len(axes) == 1 and parents[joint] >= 0
+        }
 
     def angle(self, joint: int, turns: Array) -> Array:
         """Radians (K,) by which a hinge is turned in local rotations (K, 3, 3)."""
