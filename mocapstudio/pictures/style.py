@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapstudio.formats.atomic import write_whole
-
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -21,7 +19,7 @@ _DPI = 100
 
 @dataclass(frozen=True)
 class Palette:
-    """Colours as ``#rrggbb``, those of the desk's themes; told apart by the colour-blind as well.
+    """Colours as ``#rrggbb``, told apart by the colour-blind; the desk's themes have them too.
 
     `quiet` is the map's colour just below the threshold; `loud` is the part of the perceptual map
     `colormap` that is used above it.
@@ -101,6 +99,9 @@ class Picture:
         FileError
             If it cannot be written.
         """
+        # The desk takes its colours from here, long before it writes anything.
+        from mocapstudio.formats.atomic import write_whole
+
         write_whole(path, [self.png])
 
 
