@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from mocapstudio.review.marker_changes import marker_changes
+from mocapstudio.review.marker_model import MarkerEdit
 from mocapstudio.review.model import Edit
 from mocapstudio.review.provenance import change
 
@@ -28,6 +30,24 @@ def as_json(path: Path, output: Path, edits: Sequence[Edit]) -> dict[str, Any]:
     for one in found:
         if not any(_covers(other, one) for other in told):
             told.append(one)
+    return {"path": str(path), "output": str(output), "changes": told}
+
+
+def of_markers(path: Path, output: Path, edits: Sequence[MarkerEdit]) -> dict[str, Any]:
+    """Return one entry for a take of markers: each stands as ``joint``.
+
+    Parameters
+    ----------
+    path, output
+        The take as read, and as written.
+    edits
+        Its edits, muted ones among them.
+    """
+    told = [
+        {"joint": one["marker"], "donor": None}
+        | {name: one[name] for name in ("start", "end", "method", "kind", "with")}
+        for one in marker_changes(edits)
+    ]
     return {"path": str(path), "output": str(output), "changes": told}
 
 

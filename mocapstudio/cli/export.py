@@ -11,6 +11,7 @@ from mocapstudio.cli.output import JsonPath, check_writable, write_json
 
 if TYPE_CHECKING:
     from mocapstudio.review.document import Document
+    from mocapstudio.review.marker_model import MarkerPerformer
     from mocapstudio.review.model import Performer
 
 SessionPath = Annotated[Path, typer.Argument(metavar="SESSION", help="A saved session.")]
@@ -34,16 +35,23 @@ def export(
     from mocapstudio.cli import changes
     from mocapstudio.cli.targets import Targets
     from mocapstudio.review.export import export as write
+    from mocapstudio.review.marker_export import export_markers
+    from mocapstudio.review.marker_model import MarkerPerformer
 
     check_writable(json_path)
     document = opened(session)
-    performers = _worked_on(document)
+    performers: list[Performer | MarkerPerformer] = [*_worked_on(document), *document.state.markers]
     paths = [_path(p) for p in performers]
     targets = Targets(out, paths, [session, *paths])
     done: list[dict[str, Any]] = []
     for performer, path in zip(performers, paths, strict=True):
         alone = sum(one == path for one in paths) == 1
         target = targets.of(path, performer.take, alone=alone)
+        if isinstance(performer, MarkerPerformer):
+            export_markers(document, performer.id, target, trim)
+            edited = document.marker_edits(performer.id)
+            done.append(changes.of_markers(path, target, edited))
+            continue
         write(document, performer.id, target, trim)
         edits = [e for e in document.state.sitting.edits if e.performer == performer.id]
         done.append(changes.as_json(path, target, edits))
@@ -73,6 +81,7 @@ def _worked_on(document: Document) -> list[Performer]:
     return [p for p in document.state.scene.performers if not p.partner or p.id in edited]
 
 
-def _path(performer: Performer) -> Path:
-    source = performer.take.source
-    return Path(f"{performer.take.name}.bvh") if source is None else source.path
+def _path(performer: Performer | MarkerPerformer) -> Path:
+    take = performer.take
+    suffix = ".bvh" if hasattr(take, "skeleton") else ".c3d"
+    return Path(f"{take.name}{suffix}") if take.source is None else take.source.path

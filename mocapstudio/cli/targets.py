@@ -6,9 +6,9 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from mocapstudio.cli.output import check_writable
-from mocapstudio.formats.registry import written_suffix
+from mocapstudio.formats.registry import Recording, written_suffix
 from mocapstudio.motion.errors import FileError
-from mocapstudio.motion.take import Take
+from mocapstudio.motion.markers import MarkerTake
 
 
 class Targets:
@@ -38,7 +38,7 @@ class Targets:
             check_writable(out)
             self._refuse_input(out)
 
-    def of(self, path: Path, take: Take, *, alone: bool) -> Path:
+    def of(self, path: Path, take: Recording, *, alone: bool) -> Path:
         """Return where a take goes; the folder is made.
 
         In a folder it keeps its ending, but for formats that are only read.
@@ -62,7 +62,8 @@ class Targets:
             except OSError as error:
                 raise FileError(self.out, f"cannot be made: {error.strerror}") from error
             # Markers solved to joints have no file of joints behind them.
-            suffix = written_suffix(path.suffix) if take.source is not None else ".bvh"
+            markers = isinstance(take, MarkerTake)
+            suffix = written_suffix(path.suffix if take.source else "", markers=markers)
             target = self.out / f"{path.stem if alone else take.name}{suffix}"
         elif not alone:
             target = self.out.with_name(f"{self.out.stem}-{take.name}{self.out.suffix}")

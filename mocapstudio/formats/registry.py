@@ -123,10 +123,14 @@ def is_take(path: Path) -> bool:
     return any(other.looks_like(head) for other in FORMATS if other.common)
 
 
-def written_suffix(suffix: str) -> str:
-    """Return the suffix itself where takes can be written as it tells, else ``.bvh``."""
-    written = [known for one in FORMATS if one.write is not None for known in one.suffixes]
-    return suffix if suffix.lower() in written else ".bvh"
+def written_suffix(suffix: str, *, markers: bool = False) -> str:
+    """Return the suffix itself where takes can be written as it tells, else the usual one.
+
+    That is ``.bvh``, for markers ``.c3d``.
+    """
+    able = [one for one in FORMATS if (one.write_markers if markers else one.write) is not None]
+    written = [known for one in able for known in one.suffixes]
+    return suffix if suffix.lower() in written else (".c3d" if markers else ".bvh")
 
 
 def read_any(

@@ -88,14 +88,14 @@ class FilesDesk(QObject):
         if takes or partners:
             self.opening.open(takes, partners)
 
-    def show_import_report(self) -> None:
-        """Show what was odd about the files that are open, beside the desk."""
+    def show_import_report(self, path: Path | None = None) -> None:
+        """Show what was odd about the files that are open, beside the desk; one of them first."""
         if self._import_report is None:
             self._import_report = ImportReportDialog(
                 self.opening.imports, self.rereading, self._window
             )
             self._import_report.closed.connect(self._forget_import_report)
-        self._import_report.show_file(self.opening.imports.active)
+        self._import_report.show_file(path or self.opening.imports.active)
         self._import_report.show()
         self._import_report.raise_()
         self._import_report.activateWindow()

@@ -35,7 +35,7 @@ class ImportLink(QPushButton):
         self._show()
 
     def _follow(self, old: DocumentState, new: DocumentState) -> None:
-        if old.active != new.active:
+        if old.active != new.active or old.markers is not new.markers:
             self._show()
 
     def _show(self) -> None:

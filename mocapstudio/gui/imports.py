@@ -110,11 +110,11 @@ class Imports(QObject):
         """Return what is known of a file; nothing of one that came with a session."""
         return self._known.get(path.resolve())
 
-    def file_of(self, take: Take) -> Path | None:
+    def file_of(self, take: Recording) -> Path | None:
         """Return the file that a take came from, or None for one that is in no file."""
         if take.source is not None:
             return take.source.path.resolve()
-        return self._solved.get(take)
+        return self._solved.get(take) if isinstance(take, Take) else None
 
     def solved(self, path: Path) -> bool:
         """Tell whether a file's markers were solved to what the scene shows."""
@@ -123,19 +123,19 @@ class Imports(QObject):
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """Files of the scene's performers, each once."""
-        performers = self._bridge.state.scene.performers
-        found = (self.file_of(one.take) for one in performers)
+        """Files of the scene's performers and of marker takes, each once."""
+        found = (self.file_of(one.take) for one in self._bridge.state.everyone)
         return tuple(dict.fromkeys(path for path in found if path is not None))
 
     @property
     def active(self) -> Path | None:
-        """File of the take under review."""
-        performer = self._bridge.state.performer
-        return None if performer is None else self.file_of(performer.take)
+        """File of the take under review, else of the first markers."""
+        state = self._bridge.state
+        first = state.performer or next(iter(state.markers), None)
+        return None if first is None else self.file_of(first.take)
 
     def _follow(self, old: DocumentState, new: DocumentState) -> None:
-        if old.scene is new.scene:
+        if old.scene is new.scene and old.markers is new.markers:
             return
         shown = {one.take for one in new.scene.performers}
         self._solved = {take: path for take, path in self._solved.items() if take in shown}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +14,7 @@ from mocapstudio.motion.gaps import runs
 from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.review.document import Document
 from mocapstudio.review.export import inputs_of, provenance_path
-from mocapstudio.review.marker_model import MarkerEdit
+from mocapstudio.review.marker_changes import marker_changes
 from mocapstudio.review.provenance import origin, utc_now
 
 
@@ -44,15 +43,6 @@ def export_markers(
     found = marker_provenance(document, performer, path)
     text = json.dumps(found, indent=1, ensure_ascii=False)
     write_whole(provenance_path(path), [text.encode(), b"\n"], inputs=inputs)
-
-
-def marker_changes(edits: Iterable[MarkerEdit]) -> list[dict[str, Any]]:
-    """Return every marker × span that unmuted edits may change, by start, then marker.
-
-    Frames are 0-based at the take's own rate, ends exclusive.
-    """
-    found = [_change(edit, marker) for edit in edits if not edit.muted for marker in edit.markers]
-    return sorted(found, key=lambda one: (one["start"], one["marker"], one["time"]))
 
 
 def filled_spans(take: MarkerTake) -> list[dict[str, Any]]:
@@ -88,19 +78,4 @@ def marker_provenance(document: Document, performer: str, output: Path) -> dict[
         "changes": marker_changes(document.marker_edits(performer)),
         "filled": filled_spans(result),
         "missing": int(result.missing.sum()),
-    }
-
-
-def _change(edit: MarkerEdit, marker: str) -> dict[str, Any]:
-    others = [one for one in edit.markers if one != marker]
-    return {
-        "marker": marker,
-        "start": edit.start,
-        "end": edit.end,
-        "kind": edit.kind.value,
-        "with": others[0] if edit.kind == "exchange" else None,
-        "method": edit.method,
-        "parameters": dict(edit.parameters),
-        "author": edit.author,
-        "time": edit.time,
     }

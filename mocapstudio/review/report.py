@@ -16,6 +16,8 @@ from mocapstudio.review.document import Document
 from mocapstudio.review.model import Edit, Performer, QueueItem
 from mocapstudio.review.provenance import changes, utc_now, verdict_counts
 from mocapstudio.review.report_map import flag_map
+from mocapstudio.review.report_markers import marker_section
+from mocapstudio.review.report_tables import frames, table, when
 
 _HEAD = """<!doctype html>
 <html lang="en">
@@ -41,7 +43,7 @@ def write_report(document: Document, path: Path | str) -> None:
     FileError
         If the file cannot be written, or is an input of the sitting.
     """
-    sources = [p.take.source for p in document.state.scene.performers]
+    sources = [one.take.source for one in document.state.everyone]
     inputs = [source.path for source in sources if source is not None]
     if document.state.path is not None:
         inputs.append(document.state.path)
@@ -51,17 +53,19 @@ def write_report(document: Document, path: Path | str) -> None:
 def report(document: Document) -> str:
     """Return the report of a sitting as HTML."""
     state = document.state
-    names = ", ".join(p.take.name for p in state.scene.performers if not p.partner)
+    shown = [p.take.name for p in state.scene.performers if not p.partner]
+    names = ", ".join([*shown, *(one.take.name for one in state.markers)])
     title = f"Review of {names}" if names else "Review of an empty sitting"
     style = resource("styles", "report.css").read_text(encoding="utf-8")
     return "".join(
         [
             _HEAD.format(title=escape(title), style=style),
             f"<header><h1>{escape(title)}</h1>",
-            f"<p class='muted'>mocapstudio {escape(__version__)} · {_when(utc_now())} UTC</p>",
+            f"<p class='muted'>mocapstudio {escape(__version__)} · {when(utc_now())} UTC</p>",
             "</header>",
             *(_performer(document, p) for p in state.scene.performers if _counts(document, p)),
-            _analysis(document),
+            *(marker_section(document, one) for one in state.markers),
+            *([_analysis(document)] if state.scene.performers or not state.markers else []),
             "</body>\n</html>\n",
         ]
     )
@@ -79,7 +83,7 @@ def _performer(document: Document, performer: Performer) -> str:
     source = take.source
     place = "made in memory" if source is None else f"{source.path} · SHA-256 {source.digest}"
     rate = f"{float(take.rate):g} frames a second"
-    trim = "" if take.trim is None else f" · trimmed to frames {_frames(take, *take.trim)}"
+    trim = "" if take.trim is None else f" · trimmed to frames {frames(take, *take.trim)}"
     mapped = None if analysis is None else analysis.map
     return "".join(
         [
@@ -127,16 +131,16 @@ def _flags(take: Take, queue: Sequence[QueueItem]) -> str:
                 str(rank),
                 escape(flag.joint),
                 f"{take.seconds(flag.start):.2f}",
-                _frames(take, flag.start, flag.end),
+                frames(take, flag.start, flag.end),
                 escape(flag.kind.value),
                 f"{flag.score:.2f}",
                 f"<span class='verdict {item.verdict.value}'>{word}</span>",
                 "" if decision is None else escape(decision.author),
-                "" if decision is None else _when(decision.time),
+                "" if decision is None else when(decision.time),
             ]
         )
     head = ["#", "Joint", "Time (s)", "Frames", "Kind", "Score", "Verdict", "By", "When (UTC)"]
-    return _table("What was found", head, rows, "Nothing was flagged.", numbers={0, 2, 3, 5})
+    return table("What was found", head, rows, "Nothing was flagged.", numbers={0, 2, 3, 5})
 
 
 def _edits(take: Take, edits: Iterable[Edit]) -> str:
@@ -150,15 +154,15 @@ def _edits(take: Take, edits: Iterable[Edit]) -> str:
             [
                 escape(one["joint"]),
                 f"{take.seconds(one['start']):.2f}",
-                _frames(take, one["start"], one["end"]),
+                frames(take, one["start"], one["end"]),
                 escape(one["method"]),
                 source,
                 escape(one["author"]),
-                _when(one["time"]),
+                when(one["time"]),
             ]
         )
     head = ["Joint", "Time (s)", "Frames", "Method", "Donor (0-based frames)", "By", "When (UTC)"]
-    return _table("What was changed", head, rows, "Nothing was changed.", numbers={1, 2})
+    return table("What was changed", head, rows, "Nothing was changed.", numbers={1, 2})
 
 
 def _protected(document: Document, performer: Performer, take: Take) -> str:
@@ -169,14 +173,14 @@ def _protected(document: Document, performer: Performer, take: Take) -> str:
         [
             escape(", ".join(sorted(one.joints)) or "all joints"),
             f"{take.seconds(one.start):.2f}",
-            _frames(take, one.start, one.end),
+            frames(take, one.start, one.end),
             escape(one.author),
-            _when(one.time),
+            when(one.time),
         ]
         for one in spans
     ]
     head = ["Joints", "Time (s)", "Frames", "By", "When (UTC)"]
-    return _table("What was protected", head, rows, "", numbers={1, 2})
+    return table("What was protected", head, rows, "", numbers={1, 2})
 
 
 def _analysis(document: Document) -> str:
@@ -192,33 +196,3 @@ def _analysis(document: Document) -> str:
     values += [("Note", f"{one.path}: {one.what}") for one in state.problems]
     cells = (f"<dt>{escape(k)}</dt><dd class='path'>{escape(str(v))}</dd>" for k, v in values)
     return f"<section><h2>How it was analysed</h2><dl>{''.join(cells)}</dl></section>"
-
-
-def _when(time: str) -> str:
-    """Date and time of day, without what every time has in common."""
-    return escape(time.replace("T", " ").removesuffix("Z"))
-
-
-def _frames(take: Take, start: int, end: int) -> str:
-    """Numbers of the first and the last frame, as in the take's own file."""
-    first, last = start + take.first_frame, end - 1 + take.first_frame
-    return f"{first}" if first == last else f"{first}–{last}"
-
-
-def _table(
-    title: str, head: Sequence[str], rows: Sequence[Sequence[str]], empty: str, numbers: set[int]
-) -> str:
-    """Return a table of cells that were escaped before."""
-    if not rows:
-        return f"<h3>{title}</h3><p class='muted'>{empty}</p>"
-
-    def line(tag: str, cells: Sequence[str]) -> str:
-        marks = (" class='number'" if i in numbers else "" for i in range(len(cells)))
-        inside = (f"<{tag}{m}>{c}</{tag}>" for m, c in zip(marks, cells, strict=True))
-        return f"<tr>{''.join(inside)}</tr>"
-
-    body = "".join(line("td", cells) for cells in rows)
-    return (
-        f"<h3>{title}</h3><div class='scroll'><table><thead>{line('th', head)}</thead>"
-        f"<tbody>{body}</tbody></table></div>"
-    )

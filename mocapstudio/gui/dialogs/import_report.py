@@ -178,7 +178,7 @@ class ImportReportDialog(QDialog):
             self._wrong.setText(str(error))
             return
         lost = self._rereading.touched(path)
-        if not lost or self._imports.solved(path):
+        if not lost:
             self._rereading.read(path, options)
             return
         names = ", ".join(lost)

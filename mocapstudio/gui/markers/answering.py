@@ -82,6 +82,7 @@ class Answering(QObject):
             "markers-compare": filing.compare,
             "export": filing.ask_export,
             "close-take": filing.close,
+            "import-report": filing.show_import_report,
             "deselect": self._deselect,
         }
 

@@ -95,6 +95,11 @@ class Filing(QObject):
         if self._bridge.shown.result is not None:
             self._window.files.markers.ask_solve([self._bridge.shown.result])
 
+    def show_import_report(self) -> None:
+        """Show what was odd about the file of the markers."""
+        files, source = self._window.files, self._bridge.shown.source
+        files.show_import_report(None if source is None else files.opening.imports.file_of(source))
+
     def compare(self) -> None:
         """Set the markers beside another performance."""
         if self._bridge.shown.result is not None:
