@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from mocapstudio.formats.amc_cells import as_read, frame_cells
+from mocapstudio.formats.amc_compose import composed_amc, composed_asf
 from mocapstudio.formats.amc_read import AmcRecord
 from mocapstudio.formats.amc_text import AmcText
 from mocapstudio.formats.asf_find import find_skeleton
@@ -19,20 +20,19 @@ from mocapstudio.motion.take import Take
 def write_amc(take: Take, declared: Sequence[Declared], options: WriteOptions) -> Iterator[bytes]:
     """Bytes of the take as AMC: its source's, but for the cells of changed samples.
 
-    AMC holds angles about the axes of a skeleton in an ASF, in the ASF's unit and directions. So a
-    take can be written that was read from AMC, whole or trimmed.
+    AMC holds angles about the axes of a skeleton in an ASF, in the ASF's unit and directions. A
+    take that was not read from AMC gets an ASF of its own.
 
     Raises
     ------
     MocapError
-        If a sample changed without being declared, if the take has no ASF behind it, if another
-        layout is asked for than the ASF's, or if a bone lacks the axes for a changed rotation.
+        If a sample changed without being declared, if another layout is asked for than the
+        ASF's, or if a bone lacks the axes for a changed rotation.
     """
     source = take.source
     if source is None or source.format != "amc":
-        raise MocapError(
-            f"{take.name}: AMC holds takes that were read from AMC, on their own ASF; write BVH"
-        )
+        yield from composed_amc(take, options)
+        return
     if options.relayout:
         raise MocapError(f"{take.name}: AMC has the joints, frames, unit and axes of its source")
     record: AmcRecord = source.record
@@ -49,8 +49,10 @@ def write_amc(take: Take, declared: Sequence[Declared], options: WriteOptions) -
     yield from text.spliced(cells, span or (0, take.frames))
 
 
-def asf_beside(take: Take, path: Path) -> dict[Path, bytes]:
+def asf_beside(take: Take, path: Path, options: WriteOptions) -> dict[Path, bytes]:
     """Return the ASF that an AMC at `path` needs beside it, unless the reader finds it there.
+
+    That of the take's source, else one of its own with the AMC's stem.
 
     Raises
     ------
@@ -59,15 +61,15 @@ def asf_beside(take: Take, path: Path) -> dict[Path, bytes]:
     """
     source = take.source
     if source is None or source.format != "amc":
-        return {}
-    record: AmcRecord = source.record
+        data, target = composed_asf(take, options), path.with_suffix(".asf")
+    else:
+        data, target = source.record.asf.data, path.with_name(source.record.asf.path.name)
     try:
         found = find_skeleton(path).read_bytes()
     except (FileError, OSError):
         found = b""
-    if found == record.asf.data:
+    if found == data:
         return {}
-    target = path.with_name(record.asf.path.name)
-    if target.exists() and target.read_bytes() != record.asf.data:
+    if target.exists() and target.read_bytes() != data:
         raise FileError(target, "is another skeleton than that of the take to be written beside it")
-    return {target: record.asf.data}
+    return {target: data}

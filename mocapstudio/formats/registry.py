@@ -67,7 +67,7 @@ class Format:
     read: Reader | None
     write: Writer | None = None
     write_markers: MarkerWriter | None = None
-    beside: Callable[[Take, Path], dict[Path, bytes]] | None = None
+    beside: Callable[[Take, Path, WriteOptions], dict[Path, bytes]] | None = None
     common: bool = False
 
 
@@ -216,17 +216,18 @@ def write(
     """
     path = Path(path)
     own = [take.source.path] if take.source is not None else []
-    pieces = _pieces(take, path, declared, options or WriteOptions())
-    companions = _companions(take, path)
+    options = options or WriteOptions()
+    pieces = _pieces(take, path, declared, options)
+    companions = _companions(take, path, options)
     write_whole(path, pieces, inputs=[*own, *inputs])
     for companion, data in companions.items():
         write_whole(companion, [data], inputs=[*own, *inputs])
 
 
-def _companions(take: Recording, path: Path) -> dict[Path, bytes]:
+def _companions(take: Recording, path: Path, options: WriteOptions) -> dict[Path, bytes]:
     for one in FORMATS:
         if path.suffix.lower() in one.suffixes and one.beside and isinstance(take, Take):
-            return one.beside(take, path)
+            return one.beside(take, path, options)
     return {}
 
 

@@ -167,12 +167,6 @@ def test_another_layout_is_refused(path: Path, tmp_path: Path, option: dict[str,
         write(read_one(path), tmp_path / "out.amc", options=WriteOptions(**option))  # type: ignore[arg-type]
 
 
-def test_takes_of_other_formats_are_refused(path: Path, tmp_path: Path) -> None:
-    take = replace(read_one(path), source=None)
-    with pytest.raises(MocapError, match="on their own ASF"):
-        write(take, tmp_path / "out.amc")
-
-
 def test_another_skeleton_beside_is_not_replaced(path: Path, tmp_path: Path) -> None:
     folder = tmp_path / "clean"
     folder.mkdir()
