@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapstudio.cleaning.neighbour_alignment import NeighbourAlignment
 from mocapstudio.comparison.model import Comparison
 from mocapstudio.comparison.online_path import OnlinePath
 from mocapstudio.review.comparing_matrix import PooledDistances, pooled_distances
@@ -152,3 +153,20 @@ def _blocks_in(edges: Edges, place: tuple[float, float], count: int) -> slice:
     high = int(np.ceil((edges[1] - first) / step)) + 1
     low = min(max(low, 0), count - 1)
     return slice(low, min(max(high, low + 1), count))
+
+
+def neighbour_matrix(found: NeighbourAlignment) -> KnownMatrix:
+    """Return the matrix of a flagged span (up) and a neighbour (across).
+
+    Frames count from the first of the span's margin, and from the first of the neighbour's.
+    """
+    each = found.own[1], found.theirs[1]
+    place = (0.0, each[0]), (0.0, each[1])
+    rows, columns = found.distances.shape
+    return KnownMatrix(
+        (round(rows * each[0]), round(columns * each[1])),
+        found.rates,
+        np.rint(found.path * np.array(each)).astype(np.int64),
+        PooledDistances(found.distances, *place),
+        PooledDistances(found.accumulated, *place),
+    )

@@ -94,7 +94,7 @@ def test_the_matrix_shows_costs_and_the_online_path(hands, compare):
     hands.press("X")
     plot = hands.find("compare-matrix-view")
     before = plot.grab().toImage()
-    hands.choose("matrix-picture", "accumulated cost")
+    hands.choose("matrix-picture", "accumulated")
     hands.see(lambda: plot.grab().toImage() != before)
     hands.choose("matrix-kind", "online")
     hands.see(lambda: compare.desk.matrix.plot.scales[0].stretch.length > 100)

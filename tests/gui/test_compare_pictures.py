@@ -235,7 +235,7 @@ def test_rows_stand_by_limb_in_the_order_of_the_body(view):
     ("names", "short"),
     [
         (["dataset-1_bow_angry_001", "dataset-1_bow_old_001"], ["angry", "old"]),
-        (["pupil 1", "pupil 2"], ["1", "2"]),
+        (["pupil 1", "pupil 2"], ["pupil 1", "pupil 2"]),
         (["alone"], ["alone"]),
         (["kata", "kata 2"], ["kata", "kata 2"]),
         (["a_b", "a_b_c"], None),

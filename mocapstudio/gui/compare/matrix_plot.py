@@ -208,7 +208,7 @@ class MatrixPlot(NativeView):
         p.drawImage(QRectF(QPointF(left, top), QPointF(right, bottom)), image)
 
     def _draw_boxes(self, p: QPainter) -> None:
-        p.setPen(QPen(colours.faded("#ffffff", 0.35), 1))
+        p.setPen(QPen(colours.faded("#ffffff", 0.5), 1))
         p.setBrush(Qt.BrushStyle.NoBrush)
         for first, last, begin, end in self._boxes:
             corners = self.place_of(first, begin), self.place_of(last, end)

@@ -71,7 +71,7 @@ class MatrixView(QFrame):
             "or the accumulated cost of the cheapest path to each pair. Dark is alike, or cheap;\n"
             "the line is the warping path, and a click goes to its nearest step."
         )
-        self._picture.addItems(("pose distances", "accumulated cost"))
+        self._picture.addItems(("distances", "accumulated"))
         self._picture.activated.connect(
             lambda at: self._bridge.set_ui(matrix_picture=list(Picture)[at])
         )

@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
 from mocapstudio.cleaning.model import Neighbour
 from mocapstudio.gui import icons, theme, wording
 from mocapstudio.gui.actions import Actions
+from mocapstudio.gui.dialogs.neighbour_alignment import NeighbourAlignmentDialog
 from mocapstudio.gui.document import DocumentBridge, UiState, only_frame_differs
 from mocapstudio.gui.inspector.neighbours import NeighbourList
 from mocapstudio.gui.queue.model import VERDICT_ICONS
@@ -63,6 +64,7 @@ class FlagPage(QWidget):
         self._facts = {name: label("", "", f"inspector-{name}", wrap=True) for name in _FACTS}
         self._neighbours = NeighbourList()
         self._neighbours.chosen.connect(reasons.choose)
+        self._neighbours.alignment_wanted.connect(self._show_alignment)
         self._stack = QStackedWidget()
         self._empty = QWidget()
         self._hint = Hint(self._empty, "inspector-hint")
@@ -171,6 +173,18 @@ class FlagPage(QWidget):
         if choice is None and proposal is not None and proposal.donor in near:
             choice = near.index(proposal.donor)
         self._neighbours.mark(choice)
+
+    def _show_alignment(self, which: int) -> None:
+        state, reason = self._bridge.state, self._reasons.current
+        item, analysis = state.selected, state.analysis
+        if item is None or analysis is None or reason.profile is None:
+            return
+        near = reason.neighbours or ()
+        dialog = NeighbourAlignmentDialog(
+            self._bridge, analysis, item.flag, reason.profile, near, self.window()
+        )
+        dialog.show_neighbour(which)
+        dialog.show()
 
     def _when(self, neighbour: Neighbour) -> str:
         analysis = self._bridge.state.analysis

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from PySide6.QtCore import QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent
-from PySide6.QtWidgets import QAbstractButton, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtGui import QColor, QContextMenuEvent, QFontMetrics, QPainter, QPaintEvent
+from PySide6.QtWidgets import QAbstractButton, QMenu, QSizePolicy, QVBoxLayout, QWidget
 
 from mocapstudio.cleaning.model import Neighbour
 from mocapstudio.gui import theme
@@ -31,7 +31,7 @@ class NeighbourButton(QAbstractButton):
             self.setCursor(Qt.CursorShape.PointingHandCursor)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setText(neighbour.take)
-        use = f"Click, or press {number}, to preview it as the proposal"
+        use = f"Click, or press {number}, to preview it as the proposal; right click for more"
         if not choosable:
             use = "The path of the root is mended from its own frames, not from a neighbour"
         self.setToolTip(
@@ -94,6 +94,9 @@ class NeighbourList(QWidget):
     chosen = Signal(int)
     """Emitted with the 0-based index of the neighbour that was clicked."""
 
+    alignment_wanted = Signal(int)
+    """Emitted with the 0-based index of the neighbour whose alignment is to be shown."""
+
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("neighbours")
@@ -137,6 +140,20 @@ class NeighbourList(QWidget):
             self._column.addWidget(button)
         self._note.setText(note)
         self._note.setVisible(not self._buttons)
+
+    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
+        """Offer what can be done with a neighbour."""
+        button = self.childAt(event.pos())
+        if not isinstance(button, NeighbourButton):
+            return
+        which = self._buttons.index(button)
+        menu = QMenu(self)
+        menu.setObjectName("neighbour-menu")
+        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        if button.isEnabled():
+            menu.addAction("Preview as Proposal", button.click)
+        menu.addAction("Show the Alignment…", lambda: self.alignment_wanted.emit(which))
+        menu.popup(event.globalPos())
 
     def mark(self, choice: int | None) -> None:
         """Check the neighbour whose motion is the proposal."""
