@@ -28,6 +28,13 @@ class Part(Enum):
     PROPOSAL = "proposal"
     NEIGHBOUR = "neighbour"
     PARTNER = "partner"
+    BEFORE = "before"
+    AFTER = "after"
+
+
+ONION = (Part.BEFORE, Part.AFTER)
+_SKINS, _APART = 3, 0.1
+"""Onion skins on each side of the frame, and the seconds between two of them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +57,8 @@ class Role:
         Its own frame at frame 0 of the active take; may be a fraction.
     turned
         Names of the joints whose rotations differ from the result's; empty where all may.
+    fade
+        0..1: how far its colour is lost in the background.
     """
 
     part: Part
@@ -60,6 +69,7 @@ class Role:
     rate: float = 1.0
     shift: float = 0.0
     turned: frozenset[str] = frozenset()
+    fade: float = 0.0
 
     def frame(self, frame: int) -> int | None:
         """Its own frame at a frame of the active take, or None while it is off stage."""
@@ -82,6 +92,7 @@ class Stage:
         *,
         ghosts: bool,
         neighbours: Sequence[Proposal] = (),
+        onion: bool = False,
     ) -> tuple[Role, ...]:
         """Return the roles of a state with an active performer, the result first.
 
@@ -95,6 +106,8 @@ class Stage:
             Whether the proposal and the original are shown.
         neighbours
             Proposals made of each neighbour of the selected flag, if they are to be shown.
+        onion
+            Whether the result is also shown some frames before and after.
         """
         active = state.scene.performer(state.active)
         whole = ((0, result.frames),)
@@ -108,8 +121,20 @@ class Stage:
                 roles.append(self._ghost(Part.PROPOSAL, "proposal", result, shown))
         roles += [self._ghost(Part.NEIGHBOUR, "neighbours", result, one) for one in neighbours]
         roles += [self._partner(active, other) for other in _partners(state, active)]
+        if onion:
+            roles += self._skins(result)
         self._forget(roles, state)
         return tuple(roles)
+
+    def _skins(self, result: Take) -> list[Role]:
+        seen, whole = self._seen(result, COARSE), ((0, result.frames),)
+        step = max(1, round(_APART * float(result.rate)))
+        return [
+            Role(part, str(part.value), *seen, whole, shift=float(way * far * step),
+                 fade=far / (_SKINS + 1))
+            for part, way in ((Part.BEFORE, -1), (Part.AFTER, 1))
+            for far in range(1, _SKINS + 1)
+        ]  # fmt: skip
 
     def _original(self, state: DocumentState, active: Performer) -> list[Role]:
         spans = tuple(

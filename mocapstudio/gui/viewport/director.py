@@ -46,12 +46,15 @@ class Director:
         *,
         ghosts: bool,
         neighbours: Sequence[Proposal] = (),
+        onion: bool = False,
     ) -> None:
         """Choose the roles for a state; `result` is the active take with its edits, if any."""
         if result is None:
             self.roles, self._values, self._anchor = (), None, None
             return
-        self.roles = self._stage.cast(state, result, ghosts=ghosts, neighbours=neighbours)
+        self.roles = self._stage.cast(
+            state, result, ghosts=ghosts, neighbours=neighbours, onion=onion
+        )
         mapped = None if state.analysis is None else state.analysis.map
         self._values = None if mapped is None else JointValues(mapped, result.skeleton)
 
@@ -103,6 +106,8 @@ class Director:
             Part.PROPOSAL: palette.proposal,
             Part.NEIGHBOUR: palette.neighbour,
             Part.PARTNER: palette.partner,
+            Part.BEFORE: palette.accent,
+            Part.AFTER: palette.coming,
         }
         lines = {role.name: colours[role.part] for role in self.roles if role.part in colours}
         return list(lines.items())

@@ -35,6 +35,7 @@ class Palette:
     partner: Colour
     accent: Colour
     faint: Colour
+    coming: Colour
 
 
 def palette(theme: Theme) -> Palette:
@@ -55,6 +56,7 @@ def palette(theme: Theme) -> Palette:
         partner=rgb(theme.partner),
         accent=rgb(theme.accent),
         faint=mix(ground, rgb(theme.text), 0.22),
+        coming=rgb(theme.deferred),
     )
 
 

@@ -13,13 +13,14 @@ from vtkmodules.vtkRenderingCore import vtkLight
 from mocapstudio.gui.viewport import floor, marks
 from mocapstudio.gui.viewport.bodies import Bodies
 from mocapstudio.gui.viewport.camera import VIEW_ANGLE, Turntable
-from mocapstudio.gui.viewport.cast import Part, Role
+from mocapstudio.gui.viewport.cast import ONION, Part, Role
 from mocapstudio.gui.viewport.look import Look
 from mocapstudio.gui.viewport.palette import Palette, mix, tint
 from mocapstudio.gui.viewport.shaping import stature
 from mocapstudio.gui.viewport.solids import Floats
 from mocapstudio.gui.viewport.world import Points, WorldMotion
 from mocapstudio.motion.kinematics import end_positions, take_pose
+from mocapstudio.motion.skeleton import Skeleton
 from mocapstudio.motion.topology import topology
 
 # Where light comes from, seen from the camera (right, up, back), and how strong it is.
@@ -30,7 +31,8 @@ _TRAIL_STEPS = 24
 _APART = 0.003
 _SAMPLES = 48
 # How stout a ghost is beside the performer: it must not hide what it is compared with.
-_GIRTH = {Part.ORIGINAL: 0.6, Part.PROPOSAL: 0.8, Part.NEIGHBOUR: 0.45}
+_GIRTH = {Part.ORIGINAL: 0.6, Part.PROPOSAL: 0.8, Part.NEIGHBOUR: 0.45,
+          Part.BEFORE: 0.5, Part.AFTER: 0.5}  # fmt: skip
 
 
 def set_up(renderer: Any) -> None:
@@ -136,6 +138,10 @@ class Scene3D:
                 self._bodies.pose(number, points, self._result_colours(look))
             elif role.part is Part.PARTNER:
                 self._bodies.pose(number, role.motion.points(own), self._plain[number])
+            elif role.part in ONION:
+                swell = _limbs(role.motion.take.skeleton, look.selected)
+                pose = role.motion.points(own)
+                self._bodies.pose(number, pose, self._plain[number], _GIRTH[role.part], swell)
             else:
                 self._pose_ghost(number, role, role.motion.points(own), points)
         self._bodies.changed()
@@ -226,9 +232,22 @@ def _plain_colours(role: Role, palette: Palette) -> NDArray[np.uint8]:
         Part.ORIGINAL: palette.original,
         Part.PROPOSAL: palette.proposal,
         Part.NEIGHBOUR: palette.neighbour,
+        Part.BEFORE: palette.accent,
+        Part.AFTER: palette.coming,
     }[role.part]
+    colour = mix(colour, palette.bottom, role.fade)
     dull = mix(colour, palette.bottom, 0.45)
     return np.where(_moved_by(role)[:, None], colour, dull).astype(np.uint8)
+
+
+def _limbs(skeleton: Skeleton, selected: Sequence[int]) -> Floats | None:
+    """(J + E,): 1 for points of the selected joints' limbs, 0 for others; None for the body."""
+    if not selected:
+        return None
+    parts = topology(skeleton)
+    joints = {joint for one in selected for joint in (one, *parts.limb_of(one).joints)}
+    inside = np.array([joint in joints for joint in range(len(skeleton))])
+    return np.concatenate([inside, inside[skeleton.end_parents]]).astype(np.float32)
 
 
 def _moved_by(role: Role) -> NDArray[np.bool_]:

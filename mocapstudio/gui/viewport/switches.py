@@ -31,7 +31,7 @@ class Switches(QObject):
         Called with the name of a preset view.
     frame
         Called to frame the selected joint, or the body.
-    follow, ghosts, neighbours
+    follow, ghosts, onion, neighbours
         Called with True or False.
     """
 
@@ -43,6 +43,7 @@ class Switches(QObject):
         frame: Callable[[], None],
         follow: Callable[[bool], None],
         ghosts: Callable[[bool], None],
+        onion: Callable[[bool], None],
         neighbours: Callable[[bool], None],
     ) -> None:
         super().__init__(owner)
@@ -54,6 +55,9 @@ class Switches(QObject):
         self.frame = self._make("frame", "Frame the selected joint, or the body (F)", "", frame)
         self.follow = self._switch("follow", "Follow the performer (C)", "", follow)
         self.ghosts = self._switch("ghost", "Show proposal and original as ghosts (G)", "", ghosts)
+        self.onion = self._switch(
+            "onion", "Show the selected limb, or the body, before and after (Shift+G)", "", onion
+        )
         self.neighbours = self._switch(
             "neighbours", "Show what each neighbour would do here", "K", neighbours
         )

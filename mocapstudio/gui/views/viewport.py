@@ -54,6 +54,7 @@ class Viewport(QWidget):
             frame=lambda: self.frame_joint(None),
             follow=self.set_follow,
             ghosts=self.set_ghosts,
+            onion=lambda on: bridge.set_ui(onion=on),
             neighbours=self.set_neighbours_shown,
         )
         self._canvas: Canvas | None = None
@@ -126,7 +127,8 @@ class Viewport(QWidget):
     def _show_ui(self, old: UiState, new: UiState) -> None:
         self.switches.follow.setChecked(new.follow)
         self.switches.ghosts.setChecked(new.ghosts)
-        self._cast_again |= old.ghosts != new.ghosts
+        self.switches.onion.setChecked(new.onion)
+        self._cast_again |= (old.ghosts, old.onion) != (new.ghosts, new.onion)
         if new.follow and not old.follow:
             self.director.face(self._bridge.state.frame)
         self._refresh()
@@ -155,8 +157,9 @@ class Viewport(QWidget):
         wanted = state.selected if self._neighbours_shown else None
         self._neighbours.ask(state.analysis, None if wanted is None else wanted.flag)
         result = None if state.take is None else self._bridge.document.result(state.active)
+        ui = self._bridge.ui
         self.director.cast(
-            state, result, ghosts=self._bridge.ui.ghosts, neighbours=self._neighbours.ready
+            state, result, ghosts=ui.ghosts, neighbours=self._neighbours.ready, onion=ui.onion
         )
         if self._scene is not None:
             self._scene.cast(self.director.roles, self._palette)
@@ -239,7 +242,15 @@ class Viewport(QWidget):
         parts = self.switches
         self._bar = Bar(
             self,
-            [*parts.views, None, parts.frame, parts.follow, parts.ghosts, parts.neighbours],
+            [
+                *parts.views,
+                None,
+                parts.frame,
+                parts.follow,
+                parts.ghosts,
+                parts.onion,
+                parts.neighbours,
+            ],
         )
         grid.addWidget(self._caption, 0, 0, top | left)
         grid.addWidget(self._legend, 0, 0, bottom | left)
