@@ -58,6 +58,7 @@ class Answering(QObject):
         return found | {
             "contacts-detect": ready,
             "contacts-solve": ready and some,
+            "contacts-around": ready and bool(bridge.repairs),
             "contacts-unsolve": ready and self._solved(),
             "contacts-next": some, "contacts-previous": some,
             "contacts-begin": chosen is not None and frame < chosen.end,
@@ -80,6 +81,7 @@ class Answering(QObject):
         return {
             "contacts-detect": working.detect,
             "contacts-solve": working.solve,
+            "contacts-around": working.solve_around,
             "contacts-unsolve": lambda: bridge.desk.document.set_corrections(
                 bridge.desk.state.active, ()
             ),

@@ -10,6 +10,7 @@ from PySide6.QtCore import QObject, Signal
 from mocapstudio.cleaning.contacts.model import Contact
 from mocapstudio.cleaning.ik.foot_skate import Unreached
 from mocapstudio.gui.document import DocumentBridge
+from mocapstudio.review.model import Edit
 from mocapstudio.review.state import DocumentState
 
 
@@ -72,6 +73,16 @@ class ContactsBridge(QObject):
             found = self.desk.document.contacts(state.active) if state.active else ()
             self._known = (state.sitting.contacts, state.active, found)
         return self._known[2]
+
+    @property
+    def repairs(self) -> tuple[Edit, ...]:
+        """Accepted repairs in force of the take under review."""
+        state = self.desk.state
+        return tuple(
+            one
+            for one in state.sitting.edits
+            if one.performer == state.active and one.flag is not None and not one.muted
+        )
 
     @property
     def contacts(self) -> tuple[Contact, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from functools import partial
 
 from PySide6.QtCore import QObject
@@ -22,6 +22,7 @@ from mocapstudio.gui.messages import Messages
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.take import Take
+from mocapstudio.review.around import around_repairs
 from mocapstudio.review.model import Scene
 
 DETECT, SOLVE, MEET = "contacts-detect", "contacts-solve", "contacts-meet"
@@ -54,8 +55,8 @@ class Working(QObject):
         """Whether contacts are being detected, solved or met."""
         return any(job.key in (DETECT, SOLVE, MEET) for job in self._jobs.running)
 
-    def detect(self) -> None:
-        """Find contacts of the take under review; what was drawn stays."""
+    def detect(self, then: Callable[[], object] | None = None) -> None:
+        """Find contacts of the take under review; what was drawn stays. Then go on, if asked to."""
         desk, reading = self._bridge.desk, self._readings.now
         document, performer = desk.document, desk.state.active
         if reading is None:
@@ -67,6 +68,8 @@ class Working(QObject):
             document.set_detected(performer, contacts)
             count = sum(not one.drawn for one in document.contacts(performer))
             self._messages.tell(f"{count} contact{'' if count == 1 else 's'} found.")
+            if then is not None and count:
+                then()
 
         work = _detecting(reading, self._bridge.kept)
         words = "Contacts could not be detected"
@@ -75,14 +78,30 @@ class Working(QObject):
 
     def solve(self) -> None:
         """Bend the motion so that every contact that can be met is met."""
-        desk, reading = self._bridge.desk, self._readings.now
-        document, performer = desk.document, desk.state.active
+        reading = self._readings.now
+        if reading is not None:
+            self._solve(reading, [one for one in self._bridge.kept if not reading.trouble(one)])
+
+    def solve_around(self) -> None:
+        """Meet contacts around accepted repairs only; detect them first if there are none."""
+        reading = self._readings.now
         if reading is None:
             return
-        contacts = tuple(one for one in self._bridge.kept if not reading.trouble(one))
-        left_out = len(self._bridge.kept) - len(contacts)
+        if not self._bridge.kept:
+            self.detect(then=self.solve_around)
+            return
+        usable = [one for one in self._bridge.kept if not reading.trouble(one)]
+        pieces = around_repairs(reading.before, usable, self._bridge.repairs)
+        if pieces:
+            self._solve(reading, pieces)
+        else:
+            self._messages.tell("No accepted repair moves a point in contact: nothing to solve.")
 
+    def _solve(self, reading: Reading, contacts: Sequence[Contact]) -> None:
+        desk = self._bridge.desk
+        document, performer = desk.document, desk.state.active
         kept = self._bridge.kept
+        left_out = sum(bool(reading.trouble(one)) for one in kept)
 
         def solved(result: SkateResult) -> None:
             if desk.document is not document or not _is_open(desk.state.scene, performer):

@@ -95,7 +95,6 @@ class FlagPage(QWidget):
         column.addWidget(self._neighbours)
         column.addWidget(label("FACTS", "section"))
         column.addLayout(self._make_facts())
-        column.addWidget(actions.check_box("keep-ends", "Keep hands and feet"))
         column.addStretch(1)
         scroll = QScrollArea()
         scroll.setObjectName("inspector-scroll")
@@ -251,11 +250,12 @@ def _decisions(actions: Actions) -> QFrame:
         button = actions.push_button(name, text)
         button.setProperty("verdict", str(verdict))
         button.setMinimumHeight(32)
-        grid.addWidget(button, 0, 2 * column, 1, 2)
+        grid.addWidget(button, 1, 2 * column, 1, 2)
+    grid.addWidget(actions.check_box("keep-ends", "Keep hands and feet"), 0, 0, 1, 6)
     below = QHBoxLayout()
     below.setSpacing(6)
     below.addWidget(actions.push_button("reject-like", "Reject like this"), 1)
     for name in ("protect", "reopen", "edit"):
         below.addWidget(actions.tool_button(name))
-    grid.addLayout(below, 1, 0, 1, 6)
+    grid.addLayout(below, 2, 0, 1, 6)
     return foot
