@@ -65,6 +65,15 @@ def evaluate(
             "--labels", metavar="FILE", help="Of alignment: segments of takes (JSON); repeatable."
         ),
     ] = None,
+    events: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--events",
+            metavar="FILE",
+            help="Of alignment: segments (JSON) of the same movement by different performers, of"
+            " which every two are compared; repeatable.",
+        ),
+    ] = None,
     context: Annotated[
         list[Size] | None,
         typer.Option("--context", help="Size of context; repeatable. All three by default."),
@@ -86,7 +95,9 @@ def evaluate(
 
     check_writable(json_path)
     check_writable(html_path)
-    asked = _Asked(what, data, truth, cleaned, labels or [], _sizes(context), seed, limit, brief)
+    asked = _Asked(
+        what, data, truth, cleaned, labels or [], events or [], _sizes(context), seed, limit, brief
+    )
     asked.check()
     report = run(asked.work(), f"evaluate {what.value}")
     if json_path is None:
@@ -105,6 +116,7 @@ class _Asked:
     truth: Path | None
     cleaned: Path | None
     labels: Sequence[Path]
+    events: Sequence[Path]
     sizes: Sequence[ContextSize]
     seed: int
     limit: int
@@ -120,15 +132,22 @@ class _Asked:
             raise MocapError("contacts are measured against --truth")
         if self.truth is not None and what not in {What.DETECTION, What.CONTACTS}:
             raise MocapError("labels tell where errors are, not what would be right: use --cleaned")
-        if self.labels and what is not What.ALIGNMENT:
-            raise MocapError("--labels are of segments, which only alignment is measured by")
+        if (self.labels or self.events) and what is not What.ALIGNMENT:
+            raise MocapError(
+                "--labels and --events are of segments, which only alignment is measured by"
+            )
 
     def work(self) -> Generator[Progress, None, Report]:
         if self.what is What.ALIGNMENT:
             from mocapstudio.evaluation import alignment_report
 
             return alignment_report.alignment(
-                self.data, self.labels, self.seed, self.limit, brief=self.brief
+                self.data,
+                self.labels,
+                self.seed,
+                self.limit,
+                events=self.events,
+                brief=self.brief,
             )
         if self.what is What.CONTACTS:
             from mocapstudio.evaluation import contacts_report
