@@ -119,8 +119,13 @@ def _wire_view(window: MainWindow) -> None:
     on("theme", lambda: bridge.set_ui(theme="dark" if bridge.ui.theme == "light" else "light"))
     on("full-screen", lambda: window.setWindowState(
         window.windowState() ^ Qt.WindowState.WindowFullScreen))  # fmt: skip
-    on("shortcuts", lambda: ShortcutsDialog(window).open())
+    on("shortcuts", partial(_show_keys, window))
     on("about", lambda: _about(window))
+
+
+def _show_keys(window: MainWindow) -> None:
+    switching = window.switching
+    ShortcutsDialog(switching.name, switching.front.answers(), window).open()
 
 
 def _toggle_beside(window: MainWindow, what: str) -> None:

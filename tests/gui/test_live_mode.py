@@ -13,7 +13,7 @@ from hands import CTRL, SHIFT
 from made_takes import reaching
 from mouse import click
 from PySide6.QtCore import QPointF, Qt
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QLabel
 from test_desk_layout import cut_texts
 
 from mocapstudio import formats
@@ -361,3 +361,16 @@ def test_nothing_of_live_mode_is_cut_off(hands, workspace, weights_file, size):
     hands.see(lambda: cut_texts(hands.window) == [])
     view = workspace.desk.live
     hands.see(lambda: view.geometry() == view.parentWidget().rect())
+
+
+def test_the_page_of_keys_lists_those_of_this_workspace(hands, workspace):
+    hands.key(Qt.Key.Key_F1)
+    hands.see(lambda: hands.shows("shortcuts-dialog"))
+    dialog = hands.find("shortcuts-dialog")
+    said = [one.text() for one in dialog.findChildren(QLabel)]
+    assert said[said.index("Live Mode") + 1] == "Shift+L"
+    # What is done to flags has no place here.
+    assert "Reject Like This" not in said
+    assert dialog.height() <= 680
+    dialog.close()
+    hands.come_back()

@@ -14,6 +14,7 @@ from mocapstudio.gui.compare.live_matrix import LiveMatrix
 from mocapstudio.gui.compare.live_readout import LiveReadout
 from mocapstudio.gui.compare.live_timeline import LiveTimeline
 from mocapstudio.gui.widgets.native import NativeView
+from mocapstudio.gui.widgets.parts import panel
 
 _LEFT = 250
 
@@ -47,7 +48,8 @@ class LiveView(NativeView):
         middle.addWidget(self.timeline)
         middle.addWidget(self.timing, 3)
         middle.addWidget(self.cost, 2)
-        buttons = QHBoxLayout()
+        foot = panel("live-buttons")
+        buttons = QHBoxLayout(foot)
         buttons.setContentsMargins(12, 4, 12, 8)
         buttons.setSpacing(4)
         for name, text in (("live-restart", "Restart"), ("live-wait", "Wait")):
@@ -57,7 +59,7 @@ class LiveView(NativeView):
         left = QVBoxLayout()
         left.setSpacing(0)
         left.addWidget(self.readout, 1)
-        left.addLayout(buttons)
+        left.addWidget(foot)
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(0)

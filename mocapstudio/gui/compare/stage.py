@@ -294,7 +294,7 @@ class StageView(QWidget):
         colours = self._troupe.colours(member, state, self._colour(member), hot)
         weighting = self._weighting_of(member)
         if weighting is not None:
-            colours = weighting.tints(self._palette.body, _weight_colours()[0])
+            colours = weighting.tints(self._palette.body, _weight_colours()[1])
         return Pose(
             points=points,
             colours=colours,
