@@ -50,8 +50,7 @@ def detect(
     parameters
         See `DetectionParameters`.
     decision
-        What `decision.store.prepare` learnt from the context; None for the plain map. The
-        paper's mode never uses it.
+        What `decision.store.prepare` learnt, or None; never used in the paper's mode.
     normal, protected
         Rows x spans that somebody called correct, or that nothing may change: never flagged.
 
@@ -73,26 +72,34 @@ def detect(
     mean = mean_texture(texture, corpus, neighbours, shape)
     away = departure(texture, mean)
     rates = own_rate.of_motion(motion).placed(take.span[0], take.frames)
-    learnt = False
+    used = _usable(decision, parameters, joints)
     if parameters.mode == PAPER:
         digression = maps.of_joints(take, texture, paper_map(away), away)
     else:
         height = root.height_departure(texture, corpus, neighbours, shape)
         digression = maps.plain(take, texture, away, height, rates)
         digression = maps.with_edges(digression, take, motion, texture, mean)
-        learnt = decision is not None and decision.joints == joints
-    if decision is not None and learnt:
+    if used is not None:
         yield Progress(0.75, "deciding")
-        digression = maps.decided(take, motion, corpus, decision, digression)
+        digression = maps.decided(take, motion, corpus, used, digression)
     digression = maps.without(digression, [*normal, *protected])
     yield Progress(0.95, "raising flags")
     flags = find_flags(take, digression, rates, parameters.threshold)
     left_out = tuple(name for name in take.skeleton.names if name not in joints)
-    others = tuple(context)
-    doubts = decision.doubted(others) if decision is not None and learnt else ()
+    others, learnt = tuple(context), used is not None
+    doubts = () if used is None else used.doubted(others)
     return Analysis(
         take, others, parameters, corpus, digression, flags, rates, left_out, learnt, doubts
     )
+
+
+def _usable(
+    decision: Decision | None, parameters: DetectionParameters, joints: tuple[str, ...]
+) -> Decision | None:
+    """Return the decision where it is about the joints that are compared."""
+    if decision is None or parameters.mode == PAPER:
+        return None
+    return decision if decision.joints == joints else None
 
 
 def _search(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 from collections.abc import Generator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from mocapstudio.comparison.weights_quality import SHARES
 from mocapstudio.evaluation import page
@@ -46,8 +46,16 @@ FIGURES = {
     "beyond the paper: motion counts too": (OFFLINE, PLAIN, MOTION, OURS),
 }
 
-_FOLDS, _ITERATIONS, _REFERENCES = 5, 300, 3
-_BRIEF_FOLDS, _BRIEF_ITERATIONS, _BRIEF_REFERENCES = 3, 60, 1
+
+class _Effort(NamedTuple):
+    """How thoroughly qualities are measured."""
+
+    references: int
+    folds: int
+    iterations: int
+
+
+_FULL, _BRIEF = _Effort(3, 5, 300), _Effort(1, 3, 60)
 
 
 def alignment(
@@ -75,13 +83,11 @@ def alignment(
     brief
         One reference an action, short training, no training speed.
     """
-    folds = _BRIEF_FOLDS if brief else _FOLDS
-    iterations = _BRIEF_ITERATIONS if brief else _ITERATIONS
-    references = _BRIEF_REFERENCES if brief else _REFERENCES
+    effort = _BRIEF if brief else _FULL
     known = actions(data, labels) if labels else []
     scores: list[ActionScores] = []
     for action in known:
-        scores += [(yield from scoring(action, references, folds, iterations, seed))]
+        scores += [(yield from scoring(action, *effort, seed))]
     followed = yield from following_warps(data, seed=seed, limit=min(limit, 2 if brief else 6))
     speed = yield from online_speed(long=not brief)
     recovered = yield from recovered_warps(data, seed=seed, limit=min(limit, 1 if brief else 3))
@@ -91,31 +97,27 @@ def alignment(
     if len(scores) > 1:
         scores.append(mean_scores(scores))
     tables = [*map(_quality_table, scores)]
-    if scores:
-        tables.append(_goal_table(scores))
-    if followed:
-        tables.append(_warp_table(followed))
+    tables += [_goal_table(scores)] if scores else []
+    tables += [_warp_table(followed)] if followed else []
     tables.append(_speed_table(speed))
     tables += kata_tables(recovered, peers, boundaries)
     tables += [event_table(met)] if met else []
     record: dict[str, Any] = {
-        "alignment": {
-            "quality": [one.to_json() for one in scores],
-            "folds": folds,
-            "iterations": iterations,
-            "followed": [row.to_json() for row in followed],
-            "speed": [row.to_json() for row in speed],
-            "recovered": [row.to_json() for row in recovered],
-            "boundaries": [row.to_json() for row in boundaries],
-            "events": [row.to_json() for row in met],
-            "peers": [row.to_json() for row in peers],
-        }
+        "quality": [one.to_json() for one in scores],
+        "folds": effort.folds,
+        "iterations": effort.iterations,
+        "followed": [row.to_json() for row in followed],
+        "speed": [row.to_json() for row in speed],
+        "recovered": [row.to_json() for row in recovered],
+        "boundaries": [row.to_json() for row in boundaries],
+        "events": [row.to_json() for row in met],
+        "peers": [row.to_json() for row in peers],
     }
     lead = f"seed {seed}; qualities of performances that the weights were not learnt from"
     body = [_figures_html(one) for one in reversed(scores)]
     body += [page.table_html(table) for table in tables]
     text = page.page("mocapstudio: alignment", lead, body, "mocapstudio evaluate")
-    return Report(without_nan(record), tuple(tables), text)
+    return Report(without_nan({"alignment": record}), tuple(tables), text)
 
 
 def _quality_table(scores: ActionScores) -> Table:
