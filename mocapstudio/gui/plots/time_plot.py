@@ -5,8 +5,9 @@ from __future__ import annotations
 from enum import Enum, auto
 
 import pyqtgraph as pg
-from PySide6.QtCore import QEvent, QPointF, QRectF, Qt, Signal
+from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QCursor, QKeyEvent, QMouseEvent, QPainter, QWheelEvent
+from PySide6.QtWidgets import QToolTip
 
 from mocapstudio.gui import theme as themes
 from mocapstudio.gui.plots.axes import TimeAxis
@@ -156,6 +157,14 @@ class TimePlot(pg.PlotWidget):  # type: ignore[misc]
         if frame != self._frame:
             self._frame = frame
             self._place_head()
+
+    def tell(self, at: QPointF | None, words: str) -> None:
+        """Show words beside a place of the plot, or nothing."""
+        if at is None or not words:
+            QToolTip.hideText()
+            return
+        corner = self.viewport().mapToGlobal(at.toPoint()) + QPoint(10, 6)
+        QToolTip.showText(corner, words, self)
 
     def _follow_range(self) -> None:
         self.plotItem.vb.setXRange(self.time_range.start, self.time_range.end, padding=0)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import QPoint, QPointF, QRectF, Qt
+from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QPainter, QShowEvent
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QStackedWidget, QToolTip
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QStackedWidget
 
 from mocapstudio.gui import theme as themes
 from mocapstudio.gui.document import DocumentBridge, UiState
@@ -234,9 +234,4 @@ class BesideView(PlotView):
         return f"{row}\n{when}\nfrom its mean about x {x:.0f}°, y {y:.0f}°, z {z:.0f}°"
 
     def _hover(self, at: QPointF | None) -> None:
-        words = "" if at is None else self.read_out(at)
-        if at is None or not words:
-            QToolTip.hideText()
-            return
-        corner = self.plot.viewport().mapToGlobal(at.toPoint()) + QPoint(10, 6)
-        QToolTip.showText(corner, words, self.plot)
+        self.plot.tell(at, "" if at is None else self.read_out(at))

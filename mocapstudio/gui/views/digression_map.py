@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import QPoint, QPointF, QRectF, Qt, QTimer
+from PySide6.QtCore import QPointF, QRectF, Qt, QTimer
 from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QToolButton, QToolTip, QWidget
 
@@ -315,12 +315,7 @@ class DigressionMapView(HintedPlotView):
 
     def _show_tip(self) -> None:
         at = self._pointer
-        text = "" if at is None else self.read_out(at)
-        if at is None or not text:
-            QToolTip.hideText()
-            return
-        corner = self.plot.viewport().mapToGlobal(at.toPoint()) + QPoint(10, 6)
-        QToolTip.showText(corner, text, self.plot)
+        self.plot.tell(at, "" if at is None else self.read_out(at))
 
     def read_out(self, at: QPointF) -> str:
         """Say in words what lies at a place of the plot, or "" where nothing does."""

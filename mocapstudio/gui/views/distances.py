@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import QPoint, QPointF, QRectF, Qt
+from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen, QShowEvent
 from PySide6.QtWidgets import (
     QSizePolicy,
-    QToolTip,
     QVBoxLayout,
     QWidget,
 )
@@ -262,12 +261,7 @@ class DistancesView(HintedPlotView):
             self._reasons.choose(number)
 
     def _hover(self, at: QPointF | None) -> None:
-        words = "" if at is None else self.read_out(at)
-        if at is None or not words:
-            QToolTip.hideText()
-            return
-        corner = self.plot.viewport().mapToGlobal(at.toPoint()) + QPoint(10, 6)
-        QToolTip.showText(corner, words, self.plot)
+        self.plot.tell(at, "" if at is None else self.read_out(at))
 
     def _zoom_to_flag(self) -> None:
         item = None if self._shown is None else self._shown.selected
