@@ -25,7 +25,7 @@ from mocapstudio.review.journal_records import (
     advanced,
     from_text,
 )
-from mocapstudio.review.manner import unpack_manner
+from mocapstudio.review.manner import AS_THEY_ARE, Manner, unpack_manner
 from mocapstudio.review.marker_model import MarkerPerformer
 from mocapstudio.review.model import Performer, Scene, Selection
 from mocapstudio.review.recorder import Recovered
@@ -143,7 +143,7 @@ class Opening:
             self._record.choices,
             context=self._context(),
             parameters=self._parameters(),
-            manner=unpack_manner((self._settled or self._record).manner),
+            manner=self._manner(),
             markers=tuple(markers),
             comparison=self._kept(),
             **self._view(scene),
@@ -212,6 +212,14 @@ class Opening:
         except (ParameterError, TypeError) as error:
             self.tell(self._path or Path("-"), f"its parameters are not used: {error}")
             return default
+
+    def _manner(self) -> Manner:
+        kept = (self._settled or self._record).manner
+        try:
+            return unpack_manner(kept)
+        except MalformedError as error:
+            self.tell(self._path or Path("-"), f"its manner of reading is not used: {error}")
+            return AS_THEY_ARE
 
     def _view(self, scene: Scene) -> dict[str, Any]:
         record = self._record

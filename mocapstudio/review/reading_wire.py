@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from fractions import Fraction
 from pathlib import Path
 from typing import Literal
 
 from mocapstudio.formats import ReadOptions
-from mocapstudio.formats.options import Forward, Up
-from mocapstudio.review.records import Record
+from mocapstudio.formats.options import Forward, Up, parse_rate
+from mocapstudio.motion.errors import ParameterError
+from mocapstudio.review.records import MalformedError, Record
 
 
 class ReadingRecord(Record, frozen=True):
@@ -61,12 +61,21 @@ def unpack_reading(
     ----------
     find
         Tells where a file lies now, from its path beside the session and its absolute one.
+
+    Raises
+    ------
+    MalformedError
+        If the rate is none.
     """
     skeleton = None if record.skeleton is None else Path(record.skeleton)
     if record.skeleton is not None and find is not None:
         skeleton = find(record.beside, record.skeleton) or skeleton
+    try:
+        fps = None if record.fps is None else parse_rate(record.fps)
+    except ParameterError as error:
+        raise MalformedError(str(error)) from error
     return ReadOptions(
-        None if record.fps is None else Fraction(record.fps),
+        fps,
         record.unit,
         record.up,
         record.forward,

@@ -5,18 +5,17 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from pathlib import Path
-from typing import Any, Literal, cast
+from typing import Any
 
 from numpy.typing import NDArray
 
 from mocapstudio.formats import ReadOptions, Recording, read_any
-from mocapstudio.motion.errors import FileError, MocapError
+from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.motion.take import Take
 from mocapstudio.review.reading_wire import unpack_reading
-from mocapstudio.review.take_record import TakeRecord, absolute, held, mean_w, up_axis
+from mocapstudio.review.take_record import TakeRecord, absolute, held
 
 Relocate = Callable[[Path], Path | None]
 
@@ -72,9 +71,10 @@ class Finder:
 
     def _read(self, path: Path, record: TakeRecord) -> Recording | None:
         """Read a take as it was read when the session was saved; None where it does not fit."""
-        if record.reading is None:
-            return _read_alike(path, record)
-        take = _pick(path, record, unpack_reading(record.reading, self.path))
+        options = ReadOptions()
+        if record.reading is not None:
+            options = unpack_reading(record.reading, self.path)
+        take = _pick(path, record, options)
         if take is None or take.frames != record.frames:
             return None
         return _named(take, record)
@@ -120,32 +120,6 @@ def _digest(path: Path) -> str:
         return ""
 
 
-def _read_alike(path: Path, record: TakeRecord) -> Recording | None:
-    """Read a take of a session that does not say how it was read."""
-    try:
-        take = _pick(path, record, ReadOptions())
-    except FileError:
-        # It was opened once: leniently, then.
-        take = _pick(path, record, ReadOptions(lenient=True))
-    if take is None or take.source is None:
-        return None
-    rate, up = Fraction(record.rate), up_axis(take.source)
-    wanted = ReadOptions(
-        fps=None if take.rate == rate else rate,
-        unit=None if take.source.unit == record.unit else record.unit,
-        up=None if record.up in (None, up) else cast("Literal['x', 'y', 'z']", record.up),
-        lenient=take.frames != record.frames,
-    )
-    if wanted != ReadOptions():
-        take = _pick(path, record, wanted)
-    if take is not None and not _same_motion(take, record):
-        other = _pick(path, record, replace(wanted, angles="radians"))
-        take = other if other is not None and _same_motion(other, record) else take
-    if take is None or take.frames != record.frames:
-        return None
-    return _named(take, record)
-
-
 def _pick(path: Path, record: TakeRecord, options: ReadOptions) -> Recording | None:
     takes, _ = read_any(path, options)
     kind = Take if record.labels is None else MarkerTake
@@ -174,7 +148,3 @@ def _named(take: Recording, record: TakeRecord) -> Recording | None:
 
 def _digest_of(take: Recording) -> str:
     return take.source.digest if take.source is not None else ""
-
-
-def _same_motion(take: Recording, record: TakeRecord) -> bool:
-    return isinstance(take, Take) and abs(mean_w(take) - record.mean_w) < 1e-6

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapstudio.formats import ReadOptions
-from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.motion.skeleton import Skeleton
@@ -29,8 +28,7 @@ class TakeRecord(Record, frozen=True):
     """A performer: where its take lies, how it was read, and what it must hold.
 
     A take without a file (`absolute` is None) lies in arrays ``takes/ID/…``. A marker take has
-    `labels` and no joints. Without `reading`, as earlier versions left it, the way in which a file
-    was read is told from rate, unit and axis.
+    `labels` and no joints. Without `reading` a file is read as it stands.
     """
 
     id: str
@@ -44,9 +42,6 @@ class TakeRecord(Record, frozen=True):
     absolute: str | None = None
     digest: str = ""
     performer: int = 0
-    unit: float = 1.0
-    up: str | None = None
-    mean_w: float = 0.0
     translated: tuple[int, ...] = (0,)
     first_frame: int = 0
     timecode: str | None = None
@@ -81,7 +76,6 @@ def refer(
         record = changed(
             record,
             joints=take.skeleton.names,
-            mean_w=mean_w(take),
             translated=take.translated,
         )
     if isinstance(performer, Performer):
@@ -133,18 +127,6 @@ def held(record: TakeRecord, arrays: Mapping[str, NDArray[Any]]) -> Take | Marke
         raise MalformedError(f"the take {record.name} inside is damaged ({error})") from error
 
 
-def mean_w(take: Take) -> float:
-    """Tell takes apart that were read with angles in another unit."""
-    return float(np.nan_to_num(np.abs(take.rotations[..., 3])).mean())
-
-
-def up_axis(source: Source) -> str | None:
-    """Axis of the file that became our Y; None where it is none of the three."""
-    turned = rot.rotate(np.broadcast_to(source.to_inside, (3, 4)), np.eye(3))
-    axis = int(turned[:, 1].argmax())
-    return "xyz"[axis] if turned[axis, 1] > 1 - 1e-6 else None
-
-
 def changed(record: TakeRecord, **changes: Any) -> TakeRecord:
     """Return a record with other fields."""
     return TakeRecord(**(_values(record) | changes))
@@ -165,8 +147,6 @@ def _with_source(record: TakeRecord, source: Source, folder: Path | None) -> Tak
         absolute=str(path),
         digest=source.digest,
         performer=source.performer,
-        unit=source.unit,
-        up=up_axis(source),
         reading=reading,
     )
 

@@ -8,10 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from msgspec.structs import replace as changed
 
 from mocapstudio import formats
 from mocapstudio.formats import ReadOptions
-from mocapstudio.review import journal, session_file
+from mocapstudio.motion.errors import FileError
+from mocapstudio.review import journal, session_file, session_record
 from mocapstudio.review.document import Document
 from mocapstudio.review.manner import Manner
 
@@ -109,3 +111,24 @@ def test_the_manner_of_reading_outlives_session_and_crash(tmp_path: Path) -> Non
     assert loaded.state.manner == manner
     assert not loaded.state.dirty
     assert loaded.state.manner.of(tmp_path / "kick.csv").fps == 25
+
+
+def test_a_rate_that_is_none_is_said(tmp_path: Path) -> None:
+    (tmp_path / "take.bvh").write_text(BVH)
+    (take,), _ = formats.read(tmp_path / "take.bvh", ReadOptions(fps=Fraction(25)))
+    document = Document("ana")
+    document.open_take(take)
+    session = tmp_path / "s.mocapstudio"
+    session_file.save(document, session)
+    record, arrays = session_record.read(session)
+    (one,) = record.takes
+    assert one.reading is not None
+    odd = changed(one, reading=changed(one.reading, fps="1/0"))
+    session.write_bytes(session_record.to_bytes(changed(record, takes=(odd,)), arrays))
+    with pytest.raises(FileError, match="no frame rate"):
+        session_file.load(session)
+    broken = changed(record, manner=changed(record.manner, options=odd.reading))
+    session.write_bytes(session_record.to_bytes(broken, arrays))
+    loaded = session_file.load(session)
+    assert "manner of reading" in loaded.state.problems[0].what
+    assert loaded.state.scene.performers[0].take.rate == 25
