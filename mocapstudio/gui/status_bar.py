@@ -79,18 +79,20 @@ class DeskStatusBar(QStatusBar):
 
     def _show(self, state: DocumentState) -> None:
         take = state.take
-        if take is None:
+        if take is not None:
+            facts = [f"{take.frames} frames", wording.rate(take), f"{len(take.skeleton)} joints"]
+            trim = dict(state.sitting.trims).get(state.active)
+            if trim is not None and trim != (0, take.frames):
+                first, last = wording.number(take, trim[0]), wording.number(take, trim[1] - 1)
+                facts.append(f"trimmed to {first}–{last}")
+        elif len(state.markers) == 1:
+            one = state.markers[0].take
+            facts = [f"{one.frames} frames", wording.rate(one), f"{len(one.labels)} markers"]
+        elif state.markers:
+            facts = [f"{len(state.markers)} takes of markers"]
+        else:
             self._facts.setText("")
             return
-        facts = [
-            f"{take.frames} frames",
-            wording.rate(take),
-            f"{len(take.skeleton)} joints",
-        ]
-        trim = dict(state.sitting.trims).get(state.active)
-        if trim is not None and trim != (0, take.frames):
-            first, last = wording.number(take, trim[0]), wording.number(take, trim[1] - 1)
-            facts.append(f"trimmed to {first}–{last}")
         session = "no session" if state.path is None else state.path.name
         facts.append(f"{session}, unsaved" if state.dirty else session)
         self._facts.setText("   ·   ".join(facts))

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 Slots = dict[str, Callable[[], object]]
 _ELSEWHERE = ("view-queue", "view-inspector", "view-map", "view-curves", "find", "select-all",
-              "partner", "context", "report", "trim-in", "trim-out", "trim-clear", "ghosts",
+              "partner", "context", "trim-in", "trim-out", "trim-clear", "ghosts",
               "trails", "distances", "beside-texture", "beside-map")  # fmt: skip
 """Commands about the take under review, which has no place here."""
 
@@ -83,6 +83,7 @@ class Answering(QObject):
             "export": filing.ask_export,
             "close-take": filing.close,
             "import-report": filing.show_import_report,
+            "report": filing.ask_report,
             "deselect": self._deselect,
         }
 

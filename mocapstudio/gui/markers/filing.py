@@ -95,6 +95,10 @@ class Filing(QObject):
         if self._bridge.shown.result is not None:
             self._window.files.markers.ask_solve([self._bridge.shown.result])
 
+    def ask_report(self) -> None:
+        """Ask for a name and write the report of the sitting."""
+        self._window.files.report()
+
     def show_import_report(self) -> None:
         """Show what was odd about the file of the markers."""
         files, source = self._window.files, self._bridge.shown.source

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QButtonGroup, QFrame, QHBoxLayout, QToolButton, QWidget
+from PySide6.QtWidgets import QFrame, QHBoxLayout
 
 from mocapstudio.gui import wording
 from mocapstudio.gui.actions import Actions
 from mocapstudio.gui.markers.bridge import MarkersBridge, MarkersShown
-from mocapstudio.gui.playback import SPEEDS
-from mocapstudio.gui.widgets.fields import NumberField
+from mocapstudio.gui.widgets.frame_field import FrameField
 from mocapstudio.gui.widgets.parts import label
-
-_FRACTIONS = {0.25: "¼×", 0.5: "½×", 1.0: "1×"}
+from mocapstudio.gui.widgets.speeds import SpeedButtons
 
 
 class MarkersTransport(QFrame):
@@ -32,12 +29,14 @@ class MarkersTransport(QFrame):
         self.setProperty("role", "panel")
         self.setFixedHeight(40)
         self._bridge = bridge
-        self._frame = self._make_field()
+        self._frame = FrameField("markers-frame")
+        self._frame.wanted.connect(bridge.go)
         self._time = label("", "readout", "markers-time")
         self._time.setMinimumWidth(64)
         self._time.setToolTip("Time since the take's first frame, seconds")
         self._length = label("", "muted")
-        self._speeds = QButtonGroup(self)
+        self._speeds = SpeedButtons("markers-speed")
+        self._speeds.chosen.connect(lambda speed: bridge.set(speed=speed))
         row = QHBoxLayout(self)
         row.setContentsMargins(10, 4, 10, 4)
         row.setSpacing(3)
@@ -52,48 +51,17 @@ class MarkersTransport(QFrame):
         row.addWidget(self._time)
         row.addWidget(self._length)
         row.addStretch(1)
-        for speed in SPEEDS:
-            row.addWidget(self._make_speed(speed))
+        row.addWidget(self._speeds)
         row.addSpacing(4)
         row.addWidget(actions.tool_button("loop"))
-        bridge.changed.connect(self._follow)
-        self._follow(MarkersShown(), bridge.shown)
+        bridge.changed.connect(lambda _old, new: self._show(new))
+        self._show(bridge.shown)
 
-    def _make_field(self) -> NumberField:
-        field = NumberField()
-        field.setObjectName("markers-frame")
-        field.setToolTip("Frame, by the file's own numbers; type one and press Enter")
-        field.setKeyboardTracking(False)
-        field.setFixedWidth(76)
-        field.setAlignment(Qt.AlignmentFlag.AlignRight)
-        field.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
-        field.valueChanged.connect(self._go)
-        return field
-
-    def _make_speed(self, speed: float) -> QWidget:
-        button = QToolButton()
-        button.setObjectName(f"markers-speed-{speed:g}")
-        button.setText(_FRACTIONS[speed])
-        button.setCheckable(True)
-        button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        button.setToolTip(f"Play at {_FRACTIONS[speed]} real time ([ slower, ] faster)")
-        button.clicked.connect(lambda: self._bridge.set(speed=speed))
-        self._speeds.addButton(button)
-        return button
-
-    def _go(self, number: int) -> None:
-        take = self._bridge.shown.result
-        if take is not None:
-            self._bridge.go(number - take.first_frame)
-
-    def _follow(self, old: MarkersShown, new: MarkersShown) -> None:
+    def _show(self, new: MarkersShown) -> None:
         take = new.result
         self.setEnabled(take is not None)
+        self._frame.show_frame(take, new.frame)
+        self._speeds.show_speed(new.speed)
         if take is not None:
-            if old.source is not new.source:
-                self._frame.setRange(take.first_frame, take.first_frame + take.frames - 1)
-            self._frame.setValue(wording.number(take, new.frame))
             self._time.setText(wording.seconds(take, new.frame))
             self._length.setText(f"of {wording.seconds(take, take.frames)}")
-        for button in self._speeds.buttons():
-            button.setChecked(button.objectName() == f"markers-speed-{new.speed:g}")

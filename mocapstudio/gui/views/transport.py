@@ -2,59 +2,16 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Qt
-from PySide6.QtWidgets import (
-    QButtonGroup,
-    QFrame,
-    QHBoxLayout,
-    QToolButton,
-    QWidget,
-)
+from PySide6.QtWidgets import QFrame, QHBoxLayout
 
 from mocapstudio.gui import wording
 from mocapstudio.gui.actions import Actions
 from mocapstudio.gui.document import DocumentBridge, UiState
 from mocapstudio.gui.playback import SPEEDS
-from mocapstudio.gui.widgets.fields import NumberField
+from mocapstudio.gui.widgets.frame_field import FrameField
 from mocapstudio.gui.widgets.parts import label
-from mocapstudio.motion.take import Take
+from mocapstudio.gui.widgets.speeds import SpeedButtons
 from mocapstudio.review.state import DocumentState
-
-_FRACTIONS = {0.25: "¼×", 0.5: "½×", 1.0: "1×"}
-
-
-class _FrameBox(NumberField):
-    """The file's own frame number."""
-
-    def __init__(self, bridge: DocumentBridge) -> None:
-        super().__init__()
-        self.setObjectName("frame")
-        self.setToolTip("Frame, by the file's own numbers; type one and press Enter")
-        self.setKeyboardTracking(False)
-        self.setFixedWidth(76)
-        self.setAlignment(Qt.AlignmentFlag.AlignRight)
-        self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
-        self._bridge = bridge
-        self._take: Take | None = None
-        self.editingFinished.connect(self._go)
-
-    def show_frame(self, take: Take | None, frame: int) -> None:
-        """Show a frame of a take."""
-        if take is not self._take:
-            self._take = take
-            first = 0 if take is None else take.first_frame
-            self.setRange(first, first if take is None else first + take.frames - 1)
-        if take is not None:
-            self.setValue(wording.number(take, frame))
-
-    def stepBy(self, steps: int) -> None:
-        """Step by arrow or wheel."""
-        super().stepBy(steps)
-        self._go()
-
-    def _go(self) -> None:
-        if self._take is not None:
-            self._bridge.document.set_frame(self.value() - self._take.first_frame)
 
 
 class TransportView(QFrame):
@@ -74,12 +31,14 @@ class TransportView(QFrame):
         self.setProperty("role", "panel")
         self.setFixedHeight(40)
         self._bridge = bridge
-        self._frame = _FrameBox(bridge)
+        self._frame = FrameField("frame")
+        self._frame.wanted.connect(lambda frame: bridge.document.set_frame(frame))
         self._time = label("", "readout", "time")
         self._time.setMinimumWidth(64)
         self._time.setToolTip("Time since the take's first frame, seconds")
         self._length = label("", "muted", "length")
-        self._speeds = QButtonGroup(self)
+        self._speeds = SpeedButtons("speed")
+        self._speeds.chosen.connect(lambda speed: bridge.set_ui(speed=speed))
         row = QHBoxLayout(self)
         row.setContentsMargins(10, 4, 10, 4)
         row.setSpacing(3)
@@ -94,8 +53,7 @@ class TransportView(QFrame):
         row.addWidget(self._time)
         row.addWidget(self._length)
         row.addStretch(1)
-        for speed in SPEEDS:
-            row.addWidget(self._make_speed(speed))
+        row.addWidget(self._speeds)
         row.addSpacing(4)
         row.addWidget(actions.tool_button("loop"))
         bridge.changed.connect(lambda old, new: self._show(new))
@@ -108,17 +66,6 @@ class TransportView(QFrame):
         at = SPEEDS.index(self._bridge.ui.speed) + by
         self._bridge.set_ui(speed=SPEEDS[min(max(at, 0), len(SPEEDS) - 1)])
 
-    def _make_speed(self, speed: float) -> QWidget:
-        button = QToolButton()
-        button.setObjectName(f"speed-{speed:g}")
-        button.setText(_FRACTIONS[speed])
-        button.setCheckable(True)
-        button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        button.setToolTip(f"Play at {_FRACTIONS[speed]} real time ([ slower, ] faster)")
-        button.clicked.connect(lambda: self._bridge.set_ui(speed=speed))
-        self._speeds.addButton(button)
-        return button
-
     def _show(self, state: DocumentState) -> None:
         take = state.take
         self.setEnabled(take is not None)
@@ -127,5 +74,4 @@ class TransportView(QFrame):
         self._length.setText("" if take is None else f"of {wording.seconds(take, take.frames)}")
 
     def _show_ui(self, ui: UiState) -> None:
-        for button in self._speeds.buttons():
-            button.setChecked(button.objectName() == f"speed-{ui.speed:g}")
+        self._speeds.show_speed(ui.speed)
