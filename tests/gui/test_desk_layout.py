@@ -95,18 +95,17 @@ def test_layout_and_theme_are_remembered(open_desk, qtbot, generated):
 def test_another_theme_recolours_what_already_stands_there(hands, generated):
     open_take(hands, generated.take)
     hands.press("N")
-    verdict = hands.find("inspector-verdict")
 
-    def ink() -> set[str]:
-        picture = verdict.grab().toImage()
+    def ink(name: str) -> set[str]:
+        picture = hands.find(name).grab().toImage()
         places = ((x, y) for x in range(picture.width()) for y in range(picture.height()))
         return {picture.pixelColor(x, y).name() for x, y in places}
 
-    hands.see(lambda: theme.DARK.open.lower() in ink())
-    hands.menu("View", "Light Theme")
-    hands.see(lambda: theme.LIGHT.open.lower() in ink())
-    assert theme.DARK.open.lower() not in ink()
-    hands.menu("View", "Light Theme")
+    for old, new in ((theme.LIGHT, theme.DARK), (theme.DARK, theme.LIGHT)):
+        hands.see(lambda new=new: new.open in ink("inspector-verdict"))
+        assert old.open not in ink("inspector-verdict")
+        assert old.text not in ink("active-take")
+        hands.menu("View", "Light Theme")
 
 
 def test_the_frame_box_speaks_the_files_numbers_and_gives_the_keys_back(hands, generated):
