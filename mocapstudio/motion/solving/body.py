@@ -109,6 +109,11 @@ class Body:
         """(J, 3, 3) local rotations of the standing pose."""
         return rot.to_matrix(self.template.standing)
 
+    @cached_property
+    def usual(self) -> Array:
+        """(J, 3, 3) local rotations near which joints are held where markers leave them open."""
+        return rot.to_matrix(self.template.usual)
+
     def with_offsets(self, offsets: Array, scales: Array) -> Body:
         """Move markers on their joints and give bones other lengths."""
         attachment = replace(self.attachment, offsets=offsets)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.solving.body import Body, Pose
+from mocapstudio.motion.solving.template import STIFF
 
 Array = NDArray[np.float64]
 
@@ -79,8 +80,8 @@ def standing_precision(body: Body) -> Array:
     joints = body.freedoms
     own = np.bincount(body.attachment.joints, minlength=len(body.scales))
     usual = np.array(_TURNS)[np.minimum(own, 2)]
-    for joint, stiff in body.template.stiffness.items():
-        usual[joint] = min(usual[joint], stiff)
+    for joint, kind in body.template.stiff.items():
+        usual[joint] = min(usual[joint], STIFF[kind])
     deviation = usual[joints]
     return np.where(joints == body.template.hips, 0.0, deviation**-2.0)
 
@@ -105,7 +106,7 @@ def normal(body: Body, pose: Pose, seen: Seen) -> tuple[Array, Array, Array, Arr
     weighed = (left * roots[..., None]).reshape(len(left), -1)
     matrix = np.swapaxes(slopes, 1, 2) @ slopes
     right = (np.swapaxes(slopes, 1, 2) @ weighed[..., None])[..., 0]
-    _add_prior(matrix, right, standing_precision(body), pull(body, pose, axes, body.standing))
+    _add_prior(matrix, right, standing_precision(body), pull(body, pose, axes, body.usual))
     _hold_bends(matrix, right, body, pose)
     return matrix, right, slopes, weighed
 

@@ -95,17 +95,6 @@ def segments(
     return found
 
 
-def body_axes(skeleton: Skeleton, positions: Array) -> Array:
-    """(3, 3) unit columns left, up, forward of a standing pose; the world's without legs."""
-    parts = topology(skeleton)
-    chains = {
-        limb.name: _chain(skeleton, limb, parts)
-        for limb in parts.limbs
-        if limb.name in {"left leg", "right leg"}
-    }
-    return _axes(positions, chains)
-
-
 def _axes(positions: Array, chains: dict[str, dict[str, int]]) -> Array:
     left = np.array([1.0, 0.0, 0.0])
     legs = [chains.get(f"{side} leg", {}).get("thigh") for side in ("left", "right")]

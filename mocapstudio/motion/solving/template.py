@@ -24,10 +24,12 @@ _STANDING = 0.7
 """Share of a leg's length that its height has in a standing pose."""
 _LOOKED_AT = 200
 _TRUNK = {"spine", "head"}
+_HELD = 0.5
+"""Share of that within which a joint stays that a take holds in one place."""
 _BENDS = {"forearm": 1.0, "shank": -1.0}
 """Whether what is below an elbow or a knee moves to the front or to the back when it bends."""
 _TOLD = 0.5
-_STIFF = {"spine": 0.4, "clavicle": 0.25, "hand": 0.4, "foot": 0.5}
+STIFF = {"spine": 0.4, "clavicle": 0.25, "hand": 0.4, "foot": 0.5}
 """Radians, about a third of what joints of these segments can turn in all."""
 
 
@@ -49,6 +51,9 @@ class Template:
         that never turns.
     bases
         (J, 4) local rotations from which joints turn.
+    held
+        (J, 4) mean local rotations of the take, and (J,) radians that joints usually are turned
+        from there; none for a take that does not move.
     """
 
     skeleton: Skeleton
@@ -56,6 +61,7 @@ class Template:
     standing: Array
     axes: tuple[Array, ...]
     bases: Array
+    held: tuple[Array, Array] | None = None
 
     @property
     def standing_pose(self) -> tuple[Array, Array]:
@@ -66,17 +72,30 @@ class Template:
         return positions[0], rot.to_matrix(world[0])
 
     @cached_property
-    def stiffness(self) -> dict[int, float]:
-        """Radians that joints which turn little usually are turned from the standing pose."""
-        joints = topology(self.skeleton)
-        found = {
-            j: _STIFF["spine"] for limb in joints.limbs if limb.name in _TRUNK for j in limb.joints
-        }
+    def stiff(self) -> dict[int, str]:
+        """Joints that turn little, with the part of the body that each carries."""
+        trunk = [limb for limb in topology(self.skeleton).limbs if limb.name in _TRUNK]
+        found = {joint: "spine" for limb in trunk for joint in limb.joints}
         for name, part in segments(self.skeleton, self.standing_pose[0], {}).items():
             kind = name.removeprefix("left ").removeprefix("right ")
-            if kind in _STIFF and part.joint not in found:
-                found[part.joint] = _STIFF[kind]
+            if kind in STIFF:
+                found.setdefault(part.joint, kind)
         return found
+
+    @cached_property
+    def usual(self) -> Array:
+        """(J, 4) local rotations that joints are turned about: where markers leave a turn open.
+
+        The standing pose, but for joints that the take holds elsewhere all the time: that is how
+        its skeleton was laid out, or its performer is built. How feet stand is the floor's doing.
+        """
+        usual = self.standing.copy()
+        if self.held is not None:
+            mean, spread = self.held
+            for joint, kind in self.stiff.items():
+                if kind != "foot" and spread[joint] < _HELD * STIFF[kind]:
+                    usual[joint] = mean[joint]
+        return usual
 
     @cached_property
     def bends(self) -> dict[int, float]:
@@ -153,8 +172,9 @@ def template_of(take: Take) -> Template:
     standing = np.tile(rot.IDENTITY, (len(skeleton), 1))
     if _height_share(skeleton, skeleton.rest_positions[None])[0] < _STANDING:
         standing = _straightest(take, skeleton, some)
-    axes, standing, bases = _axes(skeleton, take.rotations[some], standing, hips)
-    return Template(skeleton, hips, standing, axes, bases)
+    turns = take.rotations[some]
+    axes, standing, bases = _axes(skeleton, turns, standing, hips)
+    return Template(skeleton, hips, standing, axes, bases, _held(turns) if _moves(turns) else None)
 
 
 def _with_own_lengths(take: Take) -> Skeleton:
@@ -194,11 +214,8 @@ def _axes(
     skeleton: Skeleton, turns: Array, standing: Array, hips: int
 ) -> tuple[tuple[Array, ...], Array, Array]:
     """Axes and bases of every joint; what never turns stands as the take has it."""
-    frames, joints = turns.shape[:2]
-    first = turns[:1]
-    away = rot.to_rotation_vector(rot.multiply(turns, rot.conjugate(first)))
-    moving = np.linalg.norm(away, axis=2).max(axis=0)
-    known = frames > 1 and float(np.median(moving)) > _MOVING
+    joints = turns.shape[1]
+    first, moving, known = turns[:1], _turned(turns), _moves(turns)
     axes, standing = [], standing.copy()
     bases = np.tile(rot.IDENTITY, (joints, 1))
     for joint in range(joints):
@@ -212,6 +229,21 @@ def _axes(
             own, bases[joint] = hinge, standing[joint]
         axes.append(own)
     return tuple(axes), standing, bases
+
+
+def _turned(turns: Array) -> Array:
+    """(J,) radians that joints turn away from the first of (F, J, 4) local rotations."""
+    return np.asarray(rot.angle(turns, turns[:1]).max(axis=0))
+
+
+def _moves(turns: Array) -> bool:
+    """Whether a take shows what its joints can turn."""
+    return float(np.median(_turned(turns))) > _MOVING
+
+
+def _held(turns: Array) -> tuple[Array, Array]:
+    mean = rot.mean(turns)
+    return mean, np.sqrt((rot.angle(turns, mean) ** 2).mean(axis=0))
 
 
 def _hinge(turns: Array, standing: Array) -> Array:
