@@ -40,6 +40,7 @@ class LivePlot(QWidget):
     def __init__(self, bridge: CompareBridge, live: LiveBridge) -> None:
         super().__init__()
         self._bridge, self._live = bridge, live
+        self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
         self.setCursor(Qt.CursorShape.PointingHandCursor)
         # Figures and heads move at every frame; pictures that grow need not.
         self._later = QTimer(self)

@@ -36,6 +36,8 @@ class LiveReadout(QWidget):
         super().__init__()
         self.setObjectName("live-readout")
         self.setToolTip(_TIP)
+        # Else whatever lies behind is painted at every frame, which costs ten times as much.
+        self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
         self._bridge, self._live = bridge, live
         self._told: tuple[str, ...] = ()
         live.changed.connect(lambda _old, _new: self.follow())

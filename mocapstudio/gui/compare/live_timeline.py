@@ -37,6 +37,7 @@ class LiveTimeline(QWidget):
         super().__init__()
         self.setObjectName("live-timeline")
         self.setMinimumHeight(96)
+        self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
         self.setToolTip(
             "The reference's timeline. Solid head: where the performer is. Dashed head: where she\n"
             "would be, had she kept the reference's tempo since the action began."

@@ -25,6 +25,8 @@ class ReadOutPanel(QWidget):
         super().__init__()
         self.setFixedWidth(LEFT_GUTTER - AXIS_WIDTH)
         self.setToolTip(tip)
+        # It changes at every frame: what lies behind need not be painted with it.
+        self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
         self._title, self._value, self._words = title, "", ""
         self._colour: QColor | None = None
 
