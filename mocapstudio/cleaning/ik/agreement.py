@@ -31,6 +31,8 @@ _ALONG = 0.05
 """Share of a hold that remains along the line to a point that stands longer."""
 _APART = 0.005
 """Metres: points of one foot nearer than this are one point."""
+_PASSING = 0.025
+"""Seconds at most from the end of one contact to the start of the next that take turns."""
 _SAME_FLOOR = 0.01
 """Metres: heights of one floor, measured at two points, differ by less."""
 _STEEP = 0.3
@@ -41,16 +43,17 @@ _TURNED, _SHARE = np.cos(np.deg2rad(35.0)), 10.0
 
 @dataclass(frozen=True, eq=False)
 class _Pair:
-    """Two holds of one foot that overlap in time; `first` stands longer.
+    """Two holds of one foot that overlap in time, or follow each other; `first` stands longer.
 
     Attributes
     ----------
     first, second
         Their places in the list.
     frames
-        (k,) frames of the take in which both stand.
+        (k,) frames of the take in which both stand; none where the foot only passes from the one
+        to the other.
     ways
-        (k, 3) metres from the second point to the first.
+        (k, 3) metres from the second point to the first, or (1, 3) as it passes.
     facing
         (k, 3) the same direction as it would be if the foot alone carried it.
     """
@@ -86,7 +89,7 @@ def agreed(take: Take, laid: Sequence[Hold]) -> tuple[Hold, ...]:
     pairs.sort(key=lambda pair: -len(laid[pair.first].frames))
     turning = [_turns(pair) for pair in pairs]
     still = [p for p, turns in zip(pairs, turning, strict=True) if not turns]
-    placed = _in_reach(_placed(laid, still), still)
+    placed = _in_reach(_placed(laid, still), [pair for pair in still if len(pair.frames)])
     free = {
         i: np.broadcast_to(np.eye(3), (len(hold.frames), 3, 3)).copy()
         for i, hold in enumerate(placed)
@@ -112,19 +115,30 @@ def _pair(take: Take, world: Array, laid: Sequence[Hold], a: int, b: int) -> _Pa
     start = max(first.contact.start, second.contact.start)
     frames = np.arange(start, min(first.contact.end, second.contact.end))
     above = topology(take.skeleton).above_hips
-    if (
-        first.joint in above
-        or not near
-        or len(frames) == 0
-        or not isinstance(second.contact.target, Floor)
-    ):
+    if first.joint in above or not near or not isinstance(second.contact.target, Floor):
         return None
+    if len(frames) == 0:
+        return _passing(take, laid, a, b)
     ways = first.place[frames - first.contact.start] - second.place[frames - second.contact.start]
     if np.linalg.norm(ways, axis=1).min() <= _APART:
         return None
     foot = world[frames, _foot(take, first.joint, second.joint)]
     carried = np.median(rot.rotate(rot.conjugate(foot), ways), axis=0)
     return _Pair(a, b, frames, ways, rot.rotate(foot, carried))
+
+
+def _passing(take: Take, laid: Sequence[Hold], a: int, b: int) -> _Pair | None:
+    """Pair two holds of which one begins where the other ends, or the foot would jump there."""
+    first, second = laid[a], laid[b]
+    one, other = first.contact, second.contact
+    gap = max(one.start, other.start) - min(one.end, other.end)
+    if gap > _PASSING * float(take.rate):
+        return None
+    first_ends = one.end <= other.start
+    way = first.place[-1 if first_ends else 0] - second.place[0 if first_ends else -1]
+    if one.point == other.point or np.linalg.norm(way) <= _APART:
+        return None
+    return _Pair(a, b, np.arange(0), way[None], way[None])
 
 
 def _foot(take: Take, first: int, second: int) -> int:
@@ -160,7 +174,7 @@ def _placed(laid: Sequence[Hold], pairs: Sequence[_Pair]) -> list[Hold]:
     system = np.diag(weights)
     right = weights[:, None] * np.array([h.target[0] for h in laid])
     for pair in pairs:
-        strength = _TOGETHER * len(pair.frames)
+        strength = _TOGETHER * len(pair.ways)
         apart = strength * _standing_way(laid, pair)
         a, b = pair.first, pair.second
         system[[a, b], [a, b]] += strength

@@ -32,7 +32,9 @@ _LIMIT_WEIGHT = 30.0
 _TURN_WEIGHT = 2.0
 """Per radian: feet and hands in contact keep their direction rather than their angle."""
 _SMOOTHNESS = 2.5
-"""Per metre: that of a joint 0.4 m from the end of its limb, 1 per radian."""
+"""Per metre: that of a joint 0.9 m from the end of its limb, 2.25 per radian."""
+_LEG = 0.9
+"""Metres: what is farther from a limb's end moves more smoothly, as its inertia would have it."""
 _LEAST_LEVER = 0.05
 _STEADY = 0.15
 _FADES = 3.3
@@ -113,7 +115,9 @@ def smooth(
     low, high = take.span
     length = max(1.0, easing * float(take.rate) / _FADES)
     # What is stiff has to fade as slowly as what is soft, or it would be used in bursts.
-    steady = np.maximum(_SMOOTHNESS * levers(take.skeleton, free), _STEADY * free.stiffness)
+    lever = levers(take.skeleton, free)
+    lever[free.first :] *= lever[free.first :] / _LEG
+    steady = np.maximum(_SMOOTHNESS * lever, _STEADY * free.stiffness)
     joins = start not in (0, low), end not in (take.frames, high)
     return (
         KeepPose(end - start, free.stiffness),
