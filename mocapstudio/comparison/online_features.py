@@ -42,6 +42,10 @@ class Features(Protocol):
     def directions(self) -> bool:
         """Whether rows are directions of bones, with a fourth component of 0, or quaternions."""
 
+    @property
+    def root(self) -> int | None:
+        """Row that turns the whole body, or None where all rows do."""
+
     def of(self, take: Recording) -> F32:
         """(F, D, 4): the poses of a take's trimmed span; NaN where a row cannot be told."""
 
@@ -138,6 +142,7 @@ class BoneDirections:
     pairs: tuple[tuple[str, str], ...]
     first: F32
     directions: bool = True
+    root: None = None
 
     @classmethod
     def common(cls, reference: MarkerTake, others: tuple[MarkerTake, ...] = ()) -> BoneDirections:

@@ -28,6 +28,10 @@ MOTION_SECONDS = 0.2
 MOTION_WEIGHT = 2.0
 """Weight of those rows where none was learnt, against 1 of the poses themselves."""
 
+ROOT_WEIGHT = 6.0
+"""Weight of the root where none was learnt, against 1 of another joint: it turns the whole body,
+and tells walking on from turning, in which the legs do the same."""
+
 _FEWEST = 3
 
 
@@ -80,10 +84,13 @@ class Reference:
 
     @property
     def plain_weights(self) -> F32:
-        """(N,) weights where none were learnt."""
-        weights = np.ones(self.rows.shape[1], np.float32)
-        weights[len(self.features.names) :] = MOTION_WEIGHT
-        return weights
+        """(N,) weights where none were learnt; all alike without motion, as in paper 3."""
+        return self.weights(ROOT_WEIGHT if self.motion else 1.0, MOTION_WEIGHT)
+
+    def weights(self, root: float, motion: float) -> F32:
+        """(N,) weights of 1, `root` for the root, all times `motion` for the motion rows."""
+        poses = pose_weights(self.features, root)
+        return np.concatenate([poses, motion * poses]) if self.motion else poses
 
     def own_frame(self, at: int) -> int:
         """Frame of the take, 0-based at its own rate, nearest to a frame of `rows`."""
@@ -96,6 +103,14 @@ class Reference:
         """
         labels = labels.at_rate(self.own_rate)
         return [labels.at(self.own_frame(i)) for i in range(len(self))]
+
+
+def pose_weights(features: Features, root: float = ROOT_WEIGHT) -> F32:
+    """(D,) weights of 1, `root` for the root."""
+    weights = np.ones(len(features.names), np.float32)
+    if features.root is not None:
+        weights[features.root] = root
+    return weights
 
 
 def reference_of(

@@ -19,7 +19,7 @@ from threadpoolctl import threadpool_limits
 
 from mocapstudio.comparison.online import Variant
 from mocapstudio.comparison.online_features import F32, F64, I32
-from mocapstudio.comparison.online_reference import MOTION_WEIGHT, Reference
+from mocapstudio.comparison.online_reference import MOTION_WEIGHT, ROOT_WEIGHT, Reference
 from mocapstudio.comparison.weights import FoldQuality, JointWeights
 from mocapstudio.comparison.weights_quality import SHARES, Example, Trials
 from mocapstudio.comparison.weights_variance import variance_weights
@@ -48,9 +48,10 @@ class TrainingParameters:
     stiffness
         What the mean squared distance of the weights from where they began costs, in quality,
         divided by the number of examples: the fewer there are, the less is to be believed.
-    motion_starts
-        Weights of motion rows, against 1 of poses, among which the start is chosen; only looked
-        at where the reference has such rows.
+    root_starts, motion_starts
+        Weights of the root and of motion rows, against 1 of other joints and of poses, among
+        which the start is chosen; only looked at where the reference has such rows. The first of
+        each are the plain ones, which others have to surpass.
     variance_start
         Whether weights by variance are among the starts too.
     seed
@@ -65,7 +66,8 @@ class TrainingParameters:
     variants: tuple[Variant, ...] = (Variant.PLAIN, Variant.PATH_LENGTH)
     shares: tuple[float, ...] = SHARES
     stiffness: float = 0.4
-    motion_starts: tuple[float, ...] = (0.0, 1.0, MOTION_WEIGHT, 2 * MOTION_WEIGHT)
+    root_starts: tuple[float, ...] = (ROOT_WEIGHT, 1.0)
+    motion_starts: tuple[float, ...] = (MOTION_WEIGHT, 0.0, 1.0, 2 * MOTION_WEIGHT)
     variance_start: bool = True
     seed: int = 0
 
@@ -79,6 +81,7 @@ class TrainingParameters:
 PAPER = TrainingParameters(
     stiffness=0.0,
     variants=(Variant.PATH_LENGTH,),
+    root_starts=(1.0,),
     motion_starts=(1.0,),
     variance_start=False,
 )
@@ -205,9 +208,9 @@ def evolved(
     # The threads of the pool already fill the cores.
     with threadpool_limits(1, "blas"):
         starts = _starts(reference, examples, parameters)
-        tried = [_mean_qualities(trials, starts, variant) for variant in parameters.variants]
-        best, at = np.unravel_index(int(np.argmax(tried)), np.shape(tried))
-        variant, start = parameters.variants[int(best)], starts[int(at)]
+        tried = [trials.qualities(starts, one).mean(axis=2) for one in parameters.variants]
+        best, at = surest(np.array(tried))
+        variant, start = parameters.variants[best], starts[at]
         strategy = cma.CMAEvolutionStrategy(start, parameters.step, _options(parameters))
         while not strategy.stop():
             yield Progress(strategy.countiter / parameters.iterations, "evolving")
@@ -258,21 +261,32 @@ def folds_of(examples: Sequence[Example], folds: int, seed: int) -> list[tuple[i
     ]
 
 
+def surest(qualities: F64) -> tuple[int, int]:
+    """Choose by qualities (V, N, S) of N examples one of V variants and one of S sets of weights.
+
+    The first of both, unless others are better by more than their lead's standard error: with few
+    examples the best of many is so by chance.
+    """
+    lead = qualities - qualities[:1, :, :1]
+    examples = lead.shape[1]
+    error = lead.std(axis=1, ddof=1) / np.sqrt(examples) if examples > 1 else np.inf
+    sure = np.where(np.any(lead != 0, axis=1), lead.mean(axis=1) - error, 0.0)
+    variant, weights = np.unravel_index(int(np.argmax(sure)), sure.shape)
+    return int(variant), int(weights)
+
+
 def _starts(
     reference: Reference, examples: Sequence[Example], parameters: TrainingParameters
 ) -> F32:
     """(n, N) sets of weights where the evolution may begin, each with a mean of 1."""
-    poses = len(reference.features.names)
-    sets = [np.ones(len(reference.names), np.float32)]
+    has_root = reference.features.root is not None
+    roots = parameters.root_starts if has_root else (1.0,)
+    motions = parameters.motion_starts if reference.motion else (1.0,)
+    sets = [reference.weights(root, motion) for root in roots for motion in motions]
     if parameters.variance_start:
         rows = [example.rows for example in examples]
-        sets.append(variance_weights(rows, reference.directions))
-    if reference.motion:
-        sets = [
-            np.concatenate([one[:poses], factor * one[poses:]])
-            for one in sets
-            for factor in parameters.motion_starts
-        ]
+        by_variance = variance_weights(rows, reference.directions)
+        sets += [by_variance * reference.weights(1.0, motion) for motion in motions]
     return np.array([_used(one) for one in sets])
 
 

@@ -17,7 +17,12 @@ from made_takes import paced, walking
 from mocapstudio.comparison.labels import Labels
 from mocapstudio.comparison.model import Segment
 from mocapstudio.comparison.online import Variant
-from mocapstudio.comparison.online_reference import MOTION, reference_of
+from mocapstudio.comparison.online_reference import (
+    MOTION,
+    MOTION_WEIGHT,
+    ROOT_WEIGHT,
+    reference_of,
+)
 from mocapstudio.comparison.weights import FoldQuality, JointWeights, read_weights, write_weights
 from mocapstudio.comparison.weights_examples import LabelledTake, example_set, repetitions
 from mocapstudio.comparison.weights_quality import Example, Trials
@@ -26,6 +31,7 @@ from mocapstudio.comparison.weights_training import (
     TrainingParameters,
     evolved,
     folds_of,
+    surest,
     training,
 )
 from mocapstudio.comparison.weights_variance import variance_weights
@@ -219,3 +225,33 @@ def test_a_take_that_repeats_its_action_gives_several() -> None:
     assert {one.performer for one in cut} == {"ann"}
     once = LabelledTake(walking(3.0), labels(90))
     assert repetitions(once) == [once]
+
+
+def test_other_weights_must_surpass_the_plain_ones_by_more_than_chance() -> None:
+    rng = np.random.default_rng(0)
+    plain = rng.uniform(0.7, 0.9, 12)
+    surely = plain + 0.05 + rng.normal(0, 0.02, 12)
+    by_chance = plain + 0.01 + rng.normal(0, 0.1, 12)
+    rarely = plain.copy()
+    rarely[3] += 0.9
+    assert surest(np.stack([plain, by_chance, surely], axis=1)[None]) == (0, 2)
+    assert surest(np.stack([plain, by_chance, rarely], axis=1)[None]) == (0, 0)
+    alike = np.stack([plain, plain], axis=1)
+    assert surest(np.stack([alike, alike])) == (0, 0)
+    assert surest(np.stack([alike, np.stack([plain, surely], axis=1)])) == (1, 1)
+    # Of one example nothing can be told.
+    assert surest(np.array([[[0.5, 0.9]]])) == (0, 0)
+
+
+def test_without_training_the_root_counts_more_where_motion_counts() -> None:
+    take = walking(1.0)
+    reference, poses = reference_of(take), reference_of(take, motion=False)
+    hips = reference.names.index("Hips")
+    count = len(reference.features.names)
+    weights = reference.plain_weights
+    assert weights[hips] == ROOT_WEIGHT > 1
+    assert weights[count + hips] == ROOT_WEIGHT * MOTION_WEIGHT
+    others = np.delete(np.arange(count), hips)
+    assert set(weights[others]) == {1.0}
+    assert set(weights[count + others]) == {MOTION_WEIGHT}
+    assert set(poses.plain_weights) == {1.0}

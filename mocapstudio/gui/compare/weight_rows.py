@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from mocapstudio.comparison.online_features import features_of
-from mocapstudio.comparison.online_reference import MOTION, MOTION_WEIGHT
+from mocapstudio.comparison.online_reference import MOTION, MOTION_WEIGHT, pose_weights
 from mocapstudio.comparison.weights import JointWeights
 from mocapstudio.review.comparing import Recording
 
@@ -43,12 +43,14 @@ def weight_rows(weights: JointWeights | None, reference: Recording | None) -> tu
     if weights is None:
         if reference is None:
             return ()
-        plain = features_of(reference).names
-        return tuple(WeightRow(name, 1.0, MOTION_WEIGHT) for name in plain)
-    names = dict.fromkeys(name.removesuffix(MOTION) for name in weights.weights)
-    found = weights.weights
-    rows = [
-        WeightRow(name, float(found.get(name, 0.0)), float(found.get(name + MOTION, 0.0)))
-        for name in names
-    ]
+        features = features_of(reference)
+        plain = zip(features.names, pose_weights(features).tolist(), strict=True)
+        rows = [WeightRow(name, weight, MOTION_WEIGHT * weight) for name, weight in plain]
+    else:
+        names = dict.fromkeys(name.removesuffix(MOTION) for name in weights.weights)
+        found = weights.weights
+        rows = [
+            WeightRow(name, float(found.get(name, 0.0)), float(found.get(name + MOTION, 0.0)))
+            for name in names
+        ]
     return tuple(sorted(rows, key=lambda row: -row.total))
