@@ -48,12 +48,9 @@ def contacts(
     from mocapstudio.cli.contact_files import held, touching
     from mocapstudio.cli.targets import Targets
 
-    for path in (json_path, contacts_out):
-        check_writable(path)
     inputs = [take, *(partner or ()), *([contacts_path] if contacts_path else [])]
+    _check(json_path, contacts_out, inputs)
     target = None if out is None else Targets(out, [take], inputs)
-    if contacts_out is not None and contacts_out.resolve() in {p.resolve() for p in inputs}:
-        raise FileError(contacts_out, "is an input and is not overwritten")
     scene = touching(take, partner or (), contacts_path, reading)
     before = measure_slide(scene.take, scene.contacts, scene.points, scene.others)
     record = scene.record() | {"slide": {"before": before.mean, "after": None}}
@@ -79,6 +76,13 @@ def contacts(
     if json_path is None:
         _show(scene, before, after)
     write_json(record, json_path)
+
+
+def _check(json_path: Path | None, contacts_out: Path | None, inputs: list[Path]) -> None:
+    for path in (json_path, contacts_out):
+        check_writable(path)
+    if contacts_out is not None and contacts_out.resolve() in {p.resolve() for p in inputs}:
+        raise FileError(contacts_out, "is an input and is not overwritten")
 
 
 def _written(target: Path, document: Any, performer: str) -> dict[str, Any]:

@@ -21,6 +21,8 @@ from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.progress import Progress
 
 _POINTS = ("heel", "ball", "toe")
+_MOST_JERK, _NO_MORE = 1.2, 1.02
+"""Times the take's own 99th percentile; times what there was before."""
 _NOTE = (
     "frames in contact; within 1/30 s of a true edge nothing is scored, but for 'strict'; the"
     " thresholds of the peers are chosen on {}"
@@ -124,10 +126,14 @@ def _slide_table(folder: str, rows: Sequence[SlideRow]) -> Table:
         "method",
         "slide mm/frame",
         "worst take",
+        "worst frame",
         "gap mm",
         "edge jerk",
         "worst take",
-        "turned °",
+        "jerk rises in",
+        "legs turned °",
+        "others °",
+        "bones mm",
         "root mm",
         "s per s",
     )
@@ -141,10 +147,14 @@ def _slide_table(folder: str, rows: Sequence[SlideRow]) -> Table:
                 method,
                 number(float(np.mean(slides)), 4),
                 number(max(slides), 4),
+                number(max(row.worst_step for row in own), 2),
                 number(max(row.gap for row in own), 2),
                 number(float(np.nanmean(jerks)), 2),
                 number(float(np.nanmax(jerks)), 2),
+                ", ".join(row.take for row in own if _jerks(row)) or "–",
                 number(float(np.mean([row.turned for row in own])), 2),
+                number(float(np.mean([row.others for row in own])), 2),
+                number(max(row.bones for row in own), 4),
                 number(max(row.moved for row in own), 0),
                 number(sum(row.seconds for row in own) / sum(row.duration for row in own), 2),
             )
@@ -152,9 +162,15 @@ def _slide_table(folder: str, rows: Sequence[SlideRow]) -> Table:
     takes, count = len(rows) // len(methods), sum(row.contacts for row in rows) // len(methods)
     note = (
         f"{takes} takes, {count} contacts as detected; slide in contact a frame at 120 fps; edge"
-        " jerk against the take's own 99th percentile"
+        " jerk against the take's own 99th percentile, and takes where it rises above"
+        f" {_MOST_JERK} and what it was"
     )
     return Table(f"Foot skate, {folder}", head, tuple(made_rows), note)
+
+
+def _jerks(row: SlideRow) -> bool:
+    """Whether edges jerk more than they may: 1.2 times the take's own, or as much as before."""
+    return row.jerk > max(_MOST_JERK, _NO_MORE * row.jerk_before)
 
 
 def _to_json(one: ContactScores) -> dict[str, Any]:

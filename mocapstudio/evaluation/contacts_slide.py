@@ -22,6 +22,7 @@ from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.kinematics import take_pose
 from mocapstudio.motion.progress import run
 from mocapstudio.motion.take import Take
+from mocapstudio.motion.topology import topology
 
 Array = NDArray[np.float64]
 Cleaner = Callable[[Take, Sequence[Contact], Sequence[ContactPoint]], Take]
@@ -39,13 +40,21 @@ class SlideRow:
         Their names.
     slide
         Millimetres a frame at 120 fps, mean in contact.
+    worst_step
+        Millimetres: the same of the worst single frame.
     gap
         Millimetres: the largest distance of a point from its place.
     jerk
         Jerk of knees and ankles near contact edges over that of the whole take as it was, both
         the 99th percentile.
+    jerk_before
+        The same of the take as it was.
     turned
-        Degrees: mean change of all joints over all frames.
+        Degrees: mean change of the joints of legs over all frames.
+    others
+        Degrees: mean change of all other joints.
+    bones
+        Millimetres: the largest change of a bone's length.
     moved
         Millimetres: largest displacement of the root, or of what carries the body.
     seconds
@@ -57,9 +66,13 @@ class SlideRow:
     method: str
     take: str
     slide: float
+    worst_step: float
     gap: float
     jerk: float
+    jerk_before: float
     turned: float
+    others: float
+    bones: float
     moved: float
     seconds: float
     contacts: int
@@ -104,18 +117,47 @@ def _row(
     slid = measure_slide(cleaned, contacts, points, laid=laid)
     angle = np.degrees(rot.angle(take.rotations, cleaned.rotations))
     moved = np.linalg.norm(cleaned.translations - take.translations, axis=2)
+    legs = _in_legs(take)
     return SlideRow(
         name,
         take.name,
         1e3 * slid.mean / 120,
+        1e3 * max((one.worst for one in slid.contacts), default=0.0) / 120,
         1e3 * max((one.gap for one in slid.contacts), default=0.0),
         _edge_jerk(take, cleaned, contacts),
-        float(angle.mean()),
+        _edge_jerk(take, take, contacts),
+        _mean(angle[:, legs]),
+        _mean(angle[:, ~legs]),
+        1e3 * _stretched(take, cleaned),
         1e3 * float(moved.max()),
         seconds,
         len(contacts),
         take.duration,
     )
+
+
+def _in_legs(take: Take) -> NDArray[np.bool_]:
+    """(J,) True for joints of legs."""
+    limbs = [limb for limb in topology(take.skeleton).limbs if "leg" in limb.name]
+    found = np.zeros(len(take.skeleton), dtype=bool)
+    found[[joint for limb in limbs for joint in limb.joints]] = True
+    return found
+
+
+def _mean(angles: Array) -> float:
+    return float(angles.mean()) if angles.size else 0.0
+
+
+def _stretched(take: Take, cleaned: Take) -> float:
+    """Metres: the largest change of a joint's distance from its parent; the root has none."""
+    child = np.flatnonzero(take.skeleton.parents >= 0)
+    parent = take.skeleton.parents[child]
+    before, after = (
+        np.linalg.norm(p[:, child] - p[:, parent], axis=2)
+        for p in (take_pose(take)[0], take_pose(cleaned)[0])
+    )
+    moves = np.isin(child, take.translated)
+    return float(np.abs(after - before)[:, ~moves].max(initial=0.0))
 
 
 def _edge_jerk(take: Take, cleaned: Take, contacts: Sequence[Contact]) -> float:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from mocapstudio.cleaning.contacts.anatomy import carried_by, leg_length
 from mocapstudio.cleaning.contacts.model import Contact, ContactPoint, Floor, Target
-from mocapstudio.cleaning.contacts.on_floor import on_floor
+from mocapstudio.cleaning.contacts.on_floor import OnFloor, on_floor
 from mocapstudio.cleaning.contacts.partners import held_by
 from mocapstudio.cleaning.contacts.pivots import Standing, held_at_pivots
 from mocapstudio.cleaning.contacts.points import contact_points, point_positions
@@ -76,22 +76,10 @@ def detecting(
     positions = point_positions(take, chosen, pose)
     yield Progress(0.3, "floor")
     resting = on_floor(take, chosen, positions, pose)
-    x, y, z = (0.0, 1.0, 0.0) if resting.floor is None else resting.floor.normal.tolist()
     yield Progress(0.8, "spans")
     drawn = tuple(contact for contact in keep if contact.drawn)
-    standing = []
-    rate, leg = float(take.rate), leg_length(take.skeleton)
-    feet = carried_by(take.skeleton)
-    for column, point in enumerate(chosen):
-        sure, place = resting.probability[:, column], positions[:, column]
-        taken = [(c.start, c.end) for c in drawn if (c.joint, c.point) == point.key]
-        joint = take.skeleton.index[point.joint]
-        for span in contact_spans(sure, rate, take.span, taken):
-            for start, end in set_down(span, place, resting.speed[:, column], rate, leg):
-                target = Floor(float(np.median(place[start:end, 1])), (x, y, z))
-                contact = _contact(point, start, end, target, float(sure[start:end].mean()))
-                standing.append(Standing(contact, place, feet.get(joint, joint)))
-    found = held_at_pivots(standing, pose[1], rate)
+    standing = _standing(take, chosen, positions, resting, drawn)
+    found = held_at_pivots(standing, pose[1], float(take.rate))
     others = partners if isinstance(partners, Mapping) else {one.name: one for one in partners}
     if others:
         yield Progress(0.9, "hands of partners")
@@ -101,6 +89,30 @@ def detecting(
             if not any(c.start < held.end and held.start < c.end for c in own):
                 found.append(_contact(point, held.start, held.end, held.target, held.confidence))
     return _in_order(drawn, found)
+
+
+def _standing(
+    take: Take,
+    points: Sequence[ContactPoint],
+    positions: Array,
+    resting: OnFloor,
+    drawn: Sequence[Contact],
+) -> list[Standing]:
+    """Contacts with the floor, wherever nothing is drawn."""
+    x, y, z = (0.0, 1.0, 0.0) if resting.floor is None else resting.floor.normal.tolist()
+    rate, leg = float(take.rate), leg_length(take.skeleton)
+    feet = carried_by(take.skeleton)
+    standing = []
+    for column, point in enumerate(points):
+        sure, place = resting.probability[:, column], positions[:, column]
+        taken = [(c.start, c.end) for c in drawn if (c.joint, c.point) == point.key]
+        joint = take.skeleton.index[point.joint]
+        for span in contact_spans(sure, rate, take.span, taken):
+            for start, end in set_down(span, place, resting.speed[:, column], rate, leg):
+                target = Floor(float(np.median(place[start:end, 1])), (x, y, z))
+                contact = _contact(point, start, end, target, float(sure[start:end].mean()))
+                standing.append(Standing(contact, place, feet.get(joint, joint)))
+    return standing
 
 
 def _contact(
