@@ -272,6 +272,8 @@ class _Values(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setFixedWidth(RIGHT_GUTTER)
+        # It changes at every frame: what lies behind need not be painted with it.
+        self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
         self._pair = (np.nan, np.nan)
 
     def tell(self, before: float, after: float) -> None:

@@ -114,6 +114,8 @@ class ReadOut(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setFixedWidth(RIGHT_GUTTER)
+        # It changes at every frame: what lies behind need not be painted with it.
+        self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
         self._lines: tuple[tuple[str, str], ...] = ()
 
     @property
@@ -131,6 +133,7 @@ class ReadOut(QWidget):
         """Draw the values under one another."""
         look = themes.current()
         p = QPainter(self)
+        p.fillRect(self.rect(), QColor(look.panel))
         font = small_font(12)
         p.setFont(font)
         right = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
