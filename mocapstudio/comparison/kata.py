@@ -6,7 +6,6 @@ from collections.abc import Generator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil, floor
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,13 +21,12 @@ from mocapstudio.comparison.parameters import ComparisonParameters
 from mocapstudio.comparison.performance import Performance, framed_alike
 from mocapstudio.comparison.pose_alignment import align_poses
 from mocapstudio.motion.markers import MarkerTake
-from mocapstudio.motion.progress import Progress
+from mocapstudio.motion.progress import Progress, scaled
 from mocapstudio.motion.take import Take
 from mocapstudio.similarity.alignment.dtw import Alignment, Path
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-Result = TypeVar("Result")
 
 _MUCH = 0.1
 
@@ -73,7 +71,7 @@ def compare(
     frames = lengths(one, other, chosen)
     band = round(chosen.band * (frames[1] - 1) / _seconds(other)) if chosen.band > 0 else None
     poses = ours.resampled(one.span, frames[0]), theirs.resampled(other.span, frames[1])
-    aligned = yield from _scaled(align_poses(*poses, chosen, band), 0.2, 0.8)
+    aligned = yield from scaled(align_poses(*poses, chosen, band), 0.2, 0.8)
     yield Progress(0.8, "weighing doubts")
     doubted = doubt(aligned, _seconds(one), _seconds(other))
     pair = _Pair(one, other, matched, ours, theirs)
@@ -109,19 +107,6 @@ def lengths(one: Performance, other: Performance, chosen: ComparisonParameters) 
         return first, second
     longest = max(round(_seconds(p) * r) + 1 for p, r in zip((one, other), rates, strict=True))
     return max(2, longest), max(2, longest)
-
-
-def _scaled(
-    work: Generator[Progress, None, Result], start: float, end: float
-) -> Generator[Progress, None, Result]:
-    """Go on with work that is the part from `start` to `end` of the whole."""
-    while True:
-        try:
-            progress = next(work)
-        except StopIteration as stop:
-            result: Result = stop.value
-            return result
-        yield Progress(start + (end - start) * progress.done, progress.what)
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,11 +7,10 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject
-
 from mocapstudio.comparison.parameters import ComparisonParameters
 from mocapstudio.gui.compare.bridge import Alignment
 from mocapstudio.gui.compare.exporting import Exporting
+from mocapstudio.gui.compare.part import WorkspacePart
 from mocapstudio.gui.compare.segmenting import Segmenting
 from mocapstudio.gui.dialogs.files import FileRequest, ask_for_files
 from mocapstudio.gui.workspaces.workspace import Answers
@@ -24,21 +23,17 @@ if TYPE_CHECKING:
 Slots = dict[str, Callable[[], object]]
 
 
-class Answering(QObject):
+class Answering(WorkspacePart):
     """Connects the commands with the sitting.
 
     Parameters
     ----------
-    window
-        Whose dialogs are asked.
-    workspace
-        The workspace.
+    window, workspace
+        See `WorkspacePart`.
     """
 
     def __init__(self, window: MainWindow, workspace: CompareWorkspace) -> None:
-        super().__init__(workspace)
-        self._window, self._workspace = window, workspace
-        self._bridge = workspace.bridge
+        super().__init__(window, workspace)
         self._segmenting = Segmenting(window, workspace)
         self._exporting = Exporting(window, workspace)
         self._slots = self._files() | self._views() | self._heads()

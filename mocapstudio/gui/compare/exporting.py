@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QBuffer, QIODevice, QObject, QPoint, QRect, QSize
+from PySide6.QtCore import QBuffer, QIODevice, QPoint, QRect, QSize
 from PySide6.QtGui import QColor, QImage, QPainter
 from PySide6.QtSvg import QSvgGenerator
 from PySide6.QtWidgets import QWidget
@@ -15,34 +14,18 @@ from mocapstudio import formats
 from mocapstudio.formats.atomic import write_whole
 from mocapstudio.gui import settings, theme
 from mocapstudio.gui.compare import tables
+from mocapstudio.gui.compare.part import WorkspacePart
 from mocapstudio.gui.dialogs.files import ask_where_to_write
 from mocapstudio.gui.plots.time_plot import TimePlot
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.motion.progress import Progress
 
-if TYPE_CHECKING:
-    from mocapstudio.gui.main_window import MainWindow
-    from mocapstudio.gui.workspaces.compare import CompareWorkspace
-
 _FINER = 2
 
 
-class Exporting(QObject):
-    """Writes what the workspace shows and what came of comparing.
-
-    Parameters
-    ----------
-    window
-        Whose dialogs are asked.
-    workspace
-        The workspace.
-    """
-
-    def __init__(self, window: MainWindow, workspace: CompareWorkspace) -> None:
-        super().__init__(workspace)
-        self._window, self._workspace = window, workspace
-        self._bridge, self._messages = workspace.bridge, window.messages
+class Exporting(WorkspacePart):
+    """Writes what the workspace shows and what came of comparing."""
 
     def slots(self) -> dict[str, Callable[[], object]]:
         """What it does, by command."""

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, Qt
 from PySide6.QtGui import QColor, QPainter, QPixmap
-from PySide6.QtWidgets import QFrame, QHeaderView, QTableView, QVBoxLayout
+from PySide6.QtWidgets import QFrame, QVBoxLayout
 
 from mocapstudio.gui import theme
 from mocapstudio.gui.actions import Actions
@@ -15,6 +15,7 @@ from mocapstudio.gui.compare import colours as kinds
 from mocapstudio.gui.compare.bridge import CompareBridge
 from mocapstudio.gui.compare.naming import short_names
 from mocapstudio.gui.widgets.parts import ElidedLabel, header, label, panel
+from mocapstudio.gui.widgets.tables import column_header, make_table
 from mocapstudio.review.comparing import Compared, ComparingState
 from mocapstudio.review.comparing_state import only_view_differs
 
@@ -70,16 +71,7 @@ class RankingModel(QAbstractTableModel):
 
     def headerData(self, section: int, orientation: Qt.Orientation, role: int = 0) -> Any:
         """Name a column."""
-        if orientation is not Qt.Orientation.Horizontal:
-            return None
-        if role == Qt.ItemDataRole.DisplayRole:
-            return _COLUMNS[section][0]
-        if role == Qt.ItemDataRole.ToolTipRole:
-            return _COLUMNS[section][1]
-        if role == Qt.ItemDataRole.TextAlignmentRole:
-            side = Qt.AlignmentFlag.AlignRight if section > 1 else Qt.AlignmentFlag.AlignLeft
-            return int(side | Qt.AlignmentFlag.AlignVCenter)
-        return None
+        return column_header(_COLUMNS, 2, section, orientation, role)
 
     def data(self, index: Index, role: int = 0) -> Any:
         """Say what stands in a cell."""
@@ -156,8 +148,8 @@ class PerformancesView(QFrame):
         self._facts = label("", "muted", "reference-facts")
         self._warnings = label("", "muted", "compare-warnings", wrap=True)
         self.model = RankingModel(bridge)
-        self.table = QTableView()
-        self._prepare_table()
+        self.table = make_table("ranking", self.model, (26, 0, 66, 62), 26)
+        self.table.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
@@ -178,28 +170,6 @@ class PerformancesView(QFrame):
         self.table.clicked.connect(lambda index: self._choose(index))
         bridge.changed.connect(self._follow)
         self._show(bridge.state)
-
-    def _prepare_table(self) -> None:
-        table = self.table
-        table.setObjectName("ranking")
-        table.setModel(self.model)
-        table.setShowGrid(False)
-        table.setSelectionBehavior(QTableView.SelectionBehavior.SelectRows)
-        table.setSelectionMode(QTableView.SelectionMode.SingleSelection)
-        table.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        table.setTextElideMode(Qt.TextElideMode.ElideMiddle)
-        table.setWordWrap(False)
-        table.setFont(theme.numbers_font())
-        table.verticalHeader().hide()
-        table.verticalHeader().setDefaultSectionSize(26)
-        head = table.horizontalHeader()
-        head.setHighlightSections(False)
-        head.setMinimumSectionSize(20)
-        modes = QHeaderView.ResizeMode
-        for section, width in enumerate((26, 0, 66, 62)):
-            head.setSectionResizeMode(section, modes.Fixed if width else modes.Stretch)
-            if width:
-                head.resizeSection(section, width)
 
     def _choose(self, index: QModelIndex) -> None:
         self._bridge.sitting.choose(self.model.source(index.row()).id)

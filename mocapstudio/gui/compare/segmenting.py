@@ -4,40 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator
 from pathlib import Path
-from typing import TYPE_CHECKING
-
-from PySide6.QtCore import QObject
 
 from mocapstudio.comparison.labels import Labels, labels_of, read_labels, write_labels
 from mocapstudio.comparison.model import Segment
 from mocapstudio.comparison.segments import suggested
 from mocapstudio.gui import settings
+from mocapstudio.gui.compare.part import WorkspacePart
 from mocapstudio.gui.dialogs.files import FileRequest, ask_for_files, ask_where_to_write
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.progress import Progress
 
-if TYPE_CHECKING:
-    from mocapstudio.gui.main_window import MainWindow
-    from mocapstudio.gui.workspaces.compare import CompareWorkspace
-
 _FILTER = "Segments (*.json)"
 
 
-class Segmenting(QObject):
-    """Makes, names and stores segments.
-
-    Parameters
-    ----------
-    window
-        Whose dialogs are asked.
-    workspace
-        The workspace.
-    """
-
-    def __init__(self, window: MainWindow, workspace: CompareWorkspace) -> None:
-        super().__init__(workspace)
-        self._window, self._workspace = window, workspace
-        self._bridge, self._messages = workspace.bridge, window.messages
+class Segmenting(WorkspacePart):
+    """Makes, names and stores segments."""
 
     def slots(self) -> dict[str, Callable[[], object]]:
         """What it does, by command."""

@@ -7,7 +7,7 @@ from typing import Any
 
 from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, Qt
 from PySide6.QtGui import QColor
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QHeaderView, QTableView, QVBoxLayout
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QTableView, QVBoxLayout
 
 from mocapstudio.comparison.model import Segment
 from mocapstudio.comparison.segments import CarriedSegment
@@ -16,6 +16,7 @@ from mocapstudio.gui.actions import Actions
 from mocapstudio.gui.compare import colours as kinds
 from mocapstudio.gui.compare.bridge import CompareBridge
 from mocapstudio.gui.widgets.parts import Hint
+from mocapstudio.gui.widgets.tables import column_header, make_table
 from mocapstudio.review.comparing import ComparingState
 from mocapstudio.review.comparing_state import differing
 
@@ -72,16 +73,7 @@ class SegmentsModel(QAbstractTableModel):
 
     def headerData(self, section: int, orientation: Qt.Orientation, role: int = 0) -> Any:
         """Name a column."""
-        if orientation is not Qt.Orientation.Horizontal:
-            return None
-        if role == Qt.ItemDataRole.DisplayRole:
-            return _COLUMNS[section][0]
-        if role == Qt.ItemDataRole.ToolTipRole:
-            return _COLUMNS[section][1]
-        if role == Qt.ItemDataRole.TextAlignmentRole:
-            side = Qt.AlignmentFlag.AlignRight if section else Qt.AlignmentFlag.AlignLeft
-            return int(side | Qt.AlignmentFlag.AlignVCenter)
-        return None
+        return column_header(_COLUMNS, 1, section, orientation, role)
 
     def flags(self, index: Index) -> Qt.ItemFlag:
         """Names can be edited."""
@@ -147,8 +139,10 @@ class SegmentsView(QFrame):
         self.setProperty("role", "panel")
         self._bridge = bridge
         self.model = SegmentsModel(bridge)
-        self.table = QTableView()
-        self._prepare_table()
+        self.table = make_table("segments-table", self.model, (0, 46, 48, 54, 54), 24)
+        self.table.setTextElideMode(Qt.TextElideMode.ElideRight)
+        self.table.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
+        self.table.setEditTriggers(QTableView.EditTrigger.DoubleClicked)
         self._hint = Hint(self.table.viewport(), "segments-hint")
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
@@ -173,28 +167,6 @@ class SegmentsView(QFrame):
     def restyle(self) -> None:
         """Take over the colours of the theme in force."""
         self._show(self._bridge.state)
-
-    def _prepare_table(self) -> None:
-        table = self.table
-        table.setObjectName("segments-table")
-        table.setModel(self.model)
-        table.setShowGrid(False)
-        table.setSelectionBehavior(QTableView.SelectionBehavior.SelectRows)
-        table.setSelectionMode(QTableView.SelectionMode.SingleSelection)
-        table.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
-        table.setEditTriggers(QTableView.EditTrigger.DoubleClicked)
-        table.setWordWrap(False)
-        table.setFont(theme.numbers_font())
-        table.verticalHeader().hide()
-        table.verticalHeader().setDefaultSectionSize(24)
-        head = table.horizontalHeader()
-        head.setHighlightSections(False)
-        head.setMinimumSectionSize(20)
-        modes = QHeaderView.ResizeMode
-        for section, width in enumerate((0, 46, 48, 54, 62)):
-            head.setSectionResizeMode(section, modes.Fixed if width else modes.Stretch)
-            if width:
-                head.resizeSection(section, width)
 
     def _follow(self, old: ComparingState, new: ComparingState) -> None:
         # Nothing else may end the typing of a name.

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QButtonGroup, QFrame, QHBoxLayout, QToolButton, QWidget
+from PySide6.QtWidgets import QFrame, QHBoxLayout
 
 from mocapstudio.gui.actions import Actions
 from mocapstudio.gui.compare.bridge import CompareBridge, CompareUi
-from mocapstudio.gui.playback import SPEEDS
 from mocapstudio.gui.widgets.parts import label
+from mocapstudio.gui.widgets.speeds import SpeedButtons, next_speed
 from mocapstudio.review.comparing import ComparingState
-
-_FRACTIONS = {0.25: "¼×", 0.5: "½×", 1.0: "1×"}
 
 
 class CompareTransport(QFrame):
@@ -37,7 +34,8 @@ class CompareTransport(QFrame):
         self._source.setToolTip("Time of the chosen source, seconds since its first frame")
         for one in (self._reference, self._source):
             one.setMinimumWidth(62)
-        self._speeds = QButtonGroup(self)
+        self._speeds = SpeedButtons("compare-speed")
+        self._speeds.chosen.connect(lambda speed: bridge.set_ui(speed=speed))
         row = QHBoxLayout(self)
         row.setContentsMargins(10, 4, 10, 4)
         row.setSpacing(3)
@@ -52,8 +50,7 @@ class CompareTransport(QFrame):
         row.addWidget(label("Source", "muted"))
         row.addWidget(self._source)
         row.addStretch(1)
-        for speed in SPEEDS:
-            row.addWidget(self._make_speed(speed))
+        row.addWidget(self._speeds)
         row.addSpacing(4)
         row.addWidget(actions.tool_button("loop"))
         bridge.changed.connect(lambda old, new: self._show(new))
@@ -63,19 +60,7 @@ class CompareTransport(QFrame):
 
     def step_speed(self, by: int) -> None:
         """Play slower or faster."""
-        at = SPEEDS.index(self._bridge.ui.speed) + by
-        self._bridge.set_ui(speed=SPEEDS[min(max(at, 0), len(SPEEDS) - 1)])
-
-    def _make_speed(self, speed: float) -> QWidget:
-        button = QToolButton()
-        button.setObjectName(f"compare-speed-{speed:g}")
-        button.setText(_FRACTIONS[speed])
-        button.setCheckable(True)
-        button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        button.setToolTip(f"Play at {_FRACTIONS[speed]} real time ([ slower, ] faster)")
-        button.clicked.connect(lambda: self._bridge.set_ui(speed=speed))
-        self._speeds.addButton(button)
-        return button
+        self._bridge.set_ui(speed=next_speed(self._bridge.ui.speed, by))
 
     def _show(self, state: ComparingState) -> None:
         reference, source = state.reference, state.source
@@ -87,5 +72,4 @@ class CompareTransport(QFrame):
         )
 
     def _show_ui(self, ui: CompareUi) -> None:
-        for button in self._speeds.buttons():
-            button.setChecked(button.objectName() == f"compare-speed-{ui.speed:g}")
+        self._speeds.show_speed(ui.speed)

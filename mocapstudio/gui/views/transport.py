@@ -7,10 +7,9 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout
 from mocapstudio.gui import wording
 from mocapstudio.gui.actions import Actions
 from mocapstudio.gui.document import DocumentBridge, UiState
-from mocapstudio.gui.playback import SPEEDS
 from mocapstudio.gui.widgets.frame_field import FrameField
 from mocapstudio.gui.widgets.parts import label
-from mocapstudio.gui.widgets.speeds import SpeedButtons
+from mocapstudio.gui.widgets.speeds import SpeedButtons, next_speed
 from mocapstudio.review.state import DocumentState
 
 
@@ -63,8 +62,7 @@ class TransportView(QFrame):
 
     def step_speed(self, by: int) -> None:
         """Play slower or faster."""
-        at = SPEEDS.index(self._bridge.ui.speed) + by
-        self._bridge.set_ui(speed=SPEEDS[min(max(at, 0), len(SPEEDS) - 1)])
+        self._bridge.set_ui(speed=next_speed(self._bridge.ui.speed, by))
 
     def _show(self, state: DocumentState) -> None:
         take = state.take

@@ -45,3 +45,8 @@ class SpeedButtons(QWidget):
         """Show which speed is in force."""
         for one, button in self._buttons.items():
             button.setChecked(one == speed)
+
+
+def next_speed(speed: float, by: int) -> float:
+    """Return the speed so many steps quicker, or slower where negative."""
+    return SPEEDS[min(max(SPEEDS.index(speed) + by, 0), len(SPEEDS) - 1)]
