@@ -142,6 +142,8 @@ def _show(analysis: Analysis, path: Path) -> None:
     take = analysis.take
     many = len(analysis.flags)
     console.print(f"{path}: {take.frames} frames, {many} flags", markup=False, highlight=False)
+    if analysis.unanalysed:
+        console.print(f"not analysed: {', '.join(analysis.unanalysed)}", markup=False)
     if not many:
         return
     table = Table("Joint", "Time", "Frames", "Score", "Kind", box=None, pad_edge=False)

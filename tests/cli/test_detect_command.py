@@ -191,6 +191,16 @@ def test_without_json_the_flags_are_told(mocapstudio, broken: Path) -> None:
     assert done.stderr == ""
 
 
+def test_joints_without_a_row_are_told(mocapstudio, tmp_path: Path, figure) -> None:
+    take = figure(seed=0).write(tmp_path / "take.bvh")
+    other = figure(seed=1).write(tmp_path / "other.bvh")
+    other.write_text(other.read_text().replace("JOINT Head", "JOINT Skull"))
+    done = mocapstudio("detect", take, "--quick", "--context", other)
+    assert done.returncode == 0, done.stderr
+    assert "not analysed: Head" in done.stdout
+    assert "not analysed" not in mocapstudio("detect", take, "--quick").stdout
+
+
 def test_real_take_with_its_dancer_as_context(mocapstudio, data: Path, tmp_path: Path) -> None:
     folder = data / "cmu_salsa_pairs_bvh"
     context = [word for path in sorted(folder.glob("60_*.bvh")) for word in ("--context", path)]

@@ -119,6 +119,7 @@ class MapAnalysis:
     map: DigressionMap
     flags: tuple[Flag, ...]
     parameters: DetectionParameters = field(default_factory=DetectionParameters)
+    unanalysed: tuple[str, ...] = ()
 
     def with_threshold(self, threshold: float) -> MapAnalysis:
         kept = tuple(flag for flag in self.all_flags() if flag.peak >= threshold)

@@ -6,8 +6,8 @@ import mouse
 import numpy as np
 import plot_scene
 import pytest
-from PySide6.QtCore import QPointF, Qt
-from PySide6.QtGui import QColor
+from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
+from PySide6.QtGui import QColor, QHelpEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
@@ -15,6 +15,7 @@ from mocapstudio import formats
 from mocapstudio.cleaning.detection import detect
 from mocapstudio.gui import theme as themes
 from mocapstudio.gui.document import DocumentBridge
+from mocapstudio.gui.plots import row_labels
 from mocapstudio.gui.plots.colours import lookup_table
 from mocapstudio.gui.views.digression_map import DigressionMapView
 from mocapstudio.motion.progress import run
@@ -327,6 +328,21 @@ def test_names_that_do_not_fit_are_left_to_the_worst_flags_and_the_selection(qtb
     view.resize(1440, 600)
     QApplication.processEvents()
     assert view.labels.shown_names() == view._rows.names
+
+
+def test_joints_that_were_not_analysed_are_told(view, monkeypatch):
+    told = []
+    monkeypatch.setattr(row_labels.QToolTip, "showText", lambda _at, text, _of: told.append(text))
+    foot = QPoint(120, view.labels.height() - 5)
+    for names in ((), ("LeftThumb", "RightThumb")):
+        view.labels.set_left_out(names)
+        asked = QHelpEvent(QEvent.Type.ToolTip, foot, view.labels.mapToGlobal(foot))
+        QApplication.sendEvent(view.labels, asked)
+    assert told[0] == ""
+    assert told[1] == "Not analysed: LeftThumb, RightThumb"
+    before = view.labels.grab().toImage()
+    view.labels.set_left_out(())
+    assert view.labels.grab().toImage() != before
 
 
 def test_moving_the_play_head_draws_no_cell_again(view, document, monkeypatch):

@@ -25,6 +25,8 @@ _LIMB_ROOM = 66.0
 _LEGIBLE = 11
 _LINE = 13.0
 _LIMB_LINE = 10.0
+_FOOT = 13.0
+"""Height of the notes below the rows."""
 
 
 class RowLabels(QWidget):
@@ -48,6 +50,7 @@ class RowLabels(QWidget):
         self._hovered: str | None = None
         self._worst: tuple[str, ...] = ()
         self._edits = False
+        self._left_out: tuple[str, ...] = ()
 
     def sizeHint(self) -> QSize:
         """As wide as the gutter."""
@@ -65,6 +68,12 @@ class RowLabels(QWidget):
         marks = (selected, tuple(worst), hovered, edits)
         if marks != (self._selected, self._worst, self._hovered, self._edits):
             self._selected, self._worst, self._hovered, self._edits = marks
+            self.update()
+
+    def set_left_out(self, names: tuple[str, ...]) -> None:
+        """Say which joints have no row, because they were not analysed."""
+        if names != self._left_out:
+            self._left_out = names
             self.update()
 
     def shown_names(self) -> tuple[str, ...]:
@@ -100,14 +109,21 @@ class RowLabels(QWidget):
         metrics = QFontMetricsF(small_font())
         for name in self.shown_names():
             self._draw_name(p, look, metrics, name)
+        left = _LIMB_ROOM + 12
         if self._edits:
-            p.setFont(small_font(10))
-            p.setPen(QColor(look.faint))
-            room = QRectF(0, self.height() - 13, _LIMB_ROOM, 13)
-            p.drawText(
-                room, int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter), "edits"
-            )
+            self._draw_note(p, look, QRectF(0, self._foot(), _LIMB_ROOM, _FOOT), "edits")
+        if self._left_out:
+            room = QRectF(left, self._foot(), self.width() - left - 8, _FOOT)
+            self._draw_note(p, look, room, f"{len(self._left_out)} not analysed")
         p.end()
+
+    def _foot(self) -> float:
+        return self.height() - _FOOT
+
+    def _draw_note(self, p: QPainter, look: themes.Theme, room: QRectF, text: str) -> None:
+        p.setFont(small_font(10))
+        p.setPen(QColor(look.faint))
+        p.drawText(room, int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter), text)
 
     def _draw_limb(self, p: QPainter, look: themes.Theme, group: Group, last: float) -> float:
         """Draw a limb's name where it has room below the one at height `last`."""
@@ -168,7 +184,10 @@ class RowLabels(QWidget):
     def event(self, event: QEvent) -> bool:
         """Answer with full names where the tool tip is asked for."""
         if isinstance(event, QHelpEvent) and event.type() == QEvent.Type.ToolTip:
-            rows = self._rows_at(QPointF(event.pos()))
-            QToolTip.showText(event.globalPos(), "\n".join(rows), self)
+            at = QPointF(event.pos())
+            words = "\n".join(self._rows_at(at))
+            if self._left_out and at.y() >= self._foot():
+                words = f"Not analysed: {', '.join(self._left_out)}"
+            QToolTip.showText(event.globalPos(), words, self)
             return True
         return super().event(event)

@@ -132,6 +132,7 @@ class DigressionMapView(HintedPlotView):
         if was is None or take is not was.take:
             self._set_take(take)
         self._set_map(None if analysis is None else analysis.map)
+        self.labels.set_left_out(() if analysis is None else analysis.unanalysed)
         if was is None or new.threshold != was.threshold:
             self._set_threshold(new.threshold)
         if was is None or new.sitting is not was.sitting or new.active != was.active:
