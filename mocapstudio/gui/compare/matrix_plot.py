@@ -59,6 +59,8 @@ class MatrixPlot(NativeView):
 
     def __init__(self, names: tuple[str, str] = ("source", "reference")) -> None:
         super().__init__()
+        # Its heads move at every frame: what lies behind need not be painted with them.
+        self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
         self._names = names
         self._matrix: Matrix | None = None
         self._picture_kind = Picture.DISTANCES
