@@ -20,6 +20,7 @@ from mocapstudio.motion.errors import NoRateError
 from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.motion.progress import Progress
 from mocapstudio.motion.take import Take
+from mocapstudio.review.marker_model import MarkerPerformer
 from mocapstudio.review.model import Performer, Sitting
 
 Reading = tuple[list[Recording], ImportReport, ReadOptions]
@@ -59,13 +60,8 @@ class Rereading(Worker):
 
     def touched(self, path: Path) -> tuple[str, ...]:
         """Return the performers of a file about whom something was decided: it would be lost."""
-        sitting, wanted = self._bridge.state.sitting, path.resolve()
-        markers = (
-            one.id
-            for one in self._bridge.state.markers
-            if one.take.source is not None and one.take.source.path.resolve() == wanted
-        )
-        edited = tuple(one for one in markers if _touched(sitting, one))
+        sitting = self._bridge.state.sitting
+        edited = tuple(one.id for one in self._markers(path) if _touched(sitting, one.id))
         if self._imports.solved(path):
             # What was solved from markers stays.
             return edited
@@ -74,7 +70,8 @@ class Rereading(Worker):
 
     def look(self, path: Path) -> None:
         """Find out what is odd about a file that came with a session."""
-        takes = [one.take for one in self._performers(path)]
+        takes: list[Recording] = [one.take for one in self._performers(path)]
+        takes += [one.take for one in self._markers(path)]
         rates = [one.rate for one in takes]
         known = next((one.source.options for one in takes if one.source is not None), None)
 
@@ -149,6 +146,10 @@ class Rereading(Worker):
                     left.remove(take)
         if left:
             self._opening.markers_found.emit(tuple(left), False)
+
+    def _markers(self, path: Path) -> list[MarkerPerformer]:
+        wanted, markers = path.resolve(), self._bridge.state.markers
+        return [one for one in markers if self._imports.file_of(one.take) == wanted]
 
     def _performers(self, path: Path) -> list[Performer]:
         wanted, scene = path.resolve(), self._bridge.state.scene

@@ -107,6 +107,11 @@ class TakeGaps:
         touching = (span for span in (*one.gaps, *one.filled) if span[0] < end and start < span[1])
         return min(touching, default=None)
 
+    @cached_property
+    def shortest(self) -> int:
+        """Frames of the shortest gap; 0 without one."""
+        return min((one.end - one.start for one in self.in_time), default=0)
+
     def up_to(self, frames: int) -> tuple[GapSpan, ...]:
         """Return the gaps of at most so many frames."""
         return tuple(one for one in self.in_time if one.end - one.start <= frames)

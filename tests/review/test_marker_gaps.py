@@ -48,6 +48,7 @@ def test_worst_come_first_and_what_is_never_seen_last(cells: np.ndarray, longest
     assert list(gaps.in_time) == sorted(gaps.in_time)
     short = gaps.up_to(longest)
     assert set(short) == {one for one in gaps.in_time if one.end - one.start <= longest}
+    assert (0 < gaps.shortest <= longest) == bool(short)
 
 
 def test_the_first_gap_within_a_span() -> None:

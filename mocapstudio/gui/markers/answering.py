@@ -59,7 +59,7 @@ class Answering(QObject):
         found |= {f"markers-fill-{one.name}": gap for one in METHODS}
         return found | {
             "markers-next": some, "markers-previous": some,
-            "markers-fill-all": bool(working.short_gaps()),
+            "markers-fill-all": 0 < shown.gaps.shortest <= shown.longest,
             "markers-exchange": shown.marker is not None and len(shown.gaps.markers) > 1,
             "markers-clear": shown.marker is not None,
             "markers-take-back": bool(working.edits_here()),

@@ -47,6 +47,7 @@ class GapPage(QWidget):
         body.addStretch(1)
         bridge.changed.connect(self._follow)
         self._show(bridge.shown)
+        self._count()
 
     def _all_row(self, actions: Actions) -> QHBoxLayout:
         field = NumberField()
@@ -71,11 +72,15 @@ class GapPage(QWidget):
         if new.frame != old.frame and new.playing:
             return
         self._show(new)
+        if (old.gaps, old.longest) != (new.gaps, new.longest):
+            self._count()
 
     def _show(self, shown: MarkersShown) -> None:
         self._name.setText(shown.marker or "No marker chosen")
         self._words.setText(_words_of(shown))
         self._longest.setValue(shown.longest)
+
+    def _count(self) -> None:
         count = len(self._working.short_gaps())
         self._short.setToolTip(f"{count} gaps of this take are as short")
 

@@ -52,7 +52,8 @@ class MarkersInspector(QFrame):
         self._tabs.setCurrentWidget(self._edits)
 
     def _follow(self, old: MarkersShown, new: MarkersShown) -> None:
-        count = len({edit.group for edit in new.edits})
-        self._tabs.setTabText(1, f"Edits ({count})" if count else "Edits")
+        if old.edits != new.edits:
+            count = len({edit.group for edit in new.edits})
+            self._tabs.setTabText(1, f"Edits ({count})" if count else "Edits")
         if new.marker is not None and (old.marker, old.span) != (new.marker, new.span):
             self._tabs.setCurrentWidget(self._gap)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from PySide6.QtCore import QObject
 
@@ -46,16 +46,25 @@ class Working(QObject):
             self._messages.tell("There is no gap of the chosen marker at the play head.")
             return
         span = Declared(shown.marker, *gap)
-        take = self._bridge.desk.document.unfilled(shown.performer, (span,))
-        self._start(take, method, (span,), f"{shown.marker}, {gap[1] - gap[0]} frames")
+        performer = shown.performer
+
+        def unfilled() -> MarkerTake:
+            return self._bridge.desk.document.unfilled(performer, (span,))
+
+        self._start(unfilled, method, (span,), f"{shown.marker}, {gap[1] - gap[0]} frames")
 
     def fill_all(self) -> None:
         """Fill every gap up to the length that is set."""
         shown = self._bridge.shown
         spans = [Declared(one.marker, one.start, one.end) for one in self.short_gaps()]
         if shown.result is not None and spans:
+            performer = shown.performer
+
+            def result() -> MarkerTake:
+                return self._bridge.desk.document.marker_result(performer)
+
             words = f"{len(spans)} gaps up to {shown.longest} frames"
-            self._start(shown.result, METHODS[0].name, spans, words, {"longest": shown.longest})
+            self._start(result, METHODS[0].name, spans, words, {"longest": shown.longest})
 
     def short_gaps(self) -> Sequence[GapSpan]:
         """Return the gaps that `fill_all` would fill."""
@@ -92,19 +101,19 @@ class Working(QObject):
 
     def _start(
         self,
-        take: MarkerTake,
+        current: Callable[[], MarkerTake],
         method: str,
         spans: Sequence[Declared],
         words: str,
         parameters: dict[str, int | float | str] | None = None,
     ) -> None:
-        performer = self._bridge.shown.performer
+        performer, take = self._bridge.shown.performer, current()
         doing = f"{words} could not be filled"
 
         def done(fills: tuple[Fill, ...]) -> None:
             document = self._bridge.desk.document
             try:
-                if document.unfilled(performer, spans if len(spans) == 1 else ()) is not take:
+                if current() is not take:
                     self._messages.tell("The take changed meanwhile: nothing was filled.")
                     return
                 if fills:

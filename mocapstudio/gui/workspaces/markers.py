@@ -56,6 +56,7 @@ class MarkersWorkspace(Workspace):
         self.lanes = LanesView(self.bridge, self.time_range)
         self.curves = CurvesView(self.bridge, self.time_range)
         self.answering = Answering(self, Filing(window, self.bridge, self.working))
+        self._answered: tuple[object, ...] = ()
         self._empty = EmptyMarkers(actions)
         self._columns = QSplitter(Qt.Orientation.Horizontal)
         self._rows = QSplitter(Qt.Orientation.Vertical)
@@ -143,11 +144,10 @@ class MarkersWorkspace(Workspace):
     def _follow(self, old: MarkersShown, new: MarkersShown) -> None:
         if old.result is not new.result:
             self._show(new)
-        frame_alone = old.frame != new.frame and all(
-            getattr(old, name) is getattr(new, name)
-            for name in ("result", "marker", "span", "playing", "loop", "longest")
-        )
-        if not (frame_alone and new.playing):
+        # Applying answers to every command costs more than asking for them.
+        answers = self.answering.answers()
+        if (answers.allowed, answers.checked, answers.playing) != self._answered:
+            self._answered = (answers.allowed, answers.checked, answers.playing)
             self.answers_changed.emit()
 
     def _show(self, shown: MarkersShown) -> None:
