@@ -108,7 +108,7 @@ def test_elbows_and_knees_bend_one_way(data: Path) -> None:
     template = template_of(standing(joints.skeleton))
     names = {joints.skeleton.names[j] for j in template.bends}
     assert names == {"ltibia", "rtibia", "lradius", "rradius"}
-    for joint, sign in template.bends.items():
+    for joint, (sign, _) in template.bends.items():
         bend = np.degrees(
             sign * template.angle(joint, rot.to_matrix(result.take.rotations[:, joint]))
         )

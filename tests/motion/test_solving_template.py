@@ -57,6 +57,22 @@ def test_hinges_know_which_way_they_bend(nodding: Take) -> None:
     axes = tuple(named.get(name, np.eye(3)) for name in nodding.skeleton.names)
     skeleton = replace(nodding.skeleton, axes=axes)
     template = template_of(standing(skeleton))
-    bends = {skeleton.names[joint]: sign for joint, sign in template.bends.items()}
+    bends = {skeleton.names[joint]: sign for joint, (sign, _) in template.bends.items()}
     # About -Y a left forearm that points to +X swings to the front, +Z; a right one to the back.
     assert bends == {"LeftForeArm": 1, "RightForeArm": -1, "LeftLeg": 1, "RightLeg": -1}
+
+
+def test_a_pose_that_stands_with_bent_knees_knows_where_they_are_straight(nodding: Take) -> None:
+    knee, bend = np.array([[1.0, 0, 0]]), 0.6
+    axes = tuple(
+        knee if name.endswith("Leg") and "Up" not in name else np.eye(3)
+        for name in nodding.skeleton.names
+    )
+    template = template_of(standing(replace(nodding.skeleton, axes=axes)))
+    rotations = template.standing.copy()
+    knees = [nodding.skeleton.index[f"{side}Leg"] for side in ("Left", "Right")]
+    rotations[knees] = rot.from_rotation_vector(bend * knee)
+    crouching = replace(template, standing=rotations)
+    for one in (template, crouching):
+        straight = {joint: round(angle, 6) for joint, (_, angle) in one.bends.items()}
+        assert straight == dict.fromkeys(knees, 0.0)

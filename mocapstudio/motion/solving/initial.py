@@ -145,7 +145,7 @@ def _twist(body: Body, hinge: int, seen: Seen, start: Array, world: Array) -> Ar
     away = there - start - bone
     axis = world @ body.template.axes[hinge][0]
     along = bone / np.maximum(np.linalg.norm(bone, axis=1, keepdims=True), 1e-9)
-    wanted = body.template.bends[hinge] * np.cross(along, away)
+    wanted = body.template.bends[hinge][0] * np.cross(along, away)
     sideways = (np.cross(axis, wanted) * along).sum(axis=1)
     straight = (axis * wanted).sum(axis=1) - (axis * along).sum(axis=1) * (wanted * along).sum(1)
     bent = np.linalg.norm(wanted, axis=1) > _BENT * np.linalg.norm(away, axis=1)

@@ -18,7 +18,7 @@ MARKER = 0.01
 """Metres that a marker usually is off."""
 _TURNS = (0.4, 1.0, 3.0)
 """Radians that a joint without, with one, with more markers of its own may well be turned from the
-standing pose: decides what no marker tells, and keeps spine and neck from folding."""
+usual pose: decides what no marker tells, and keeps spine and neck from folding."""
 _STRAIGHT, _WRONG_WAY = 0.17, 0.05
 """Radians that a knee or elbow bends beyond straight; how far it may well go past that."""
 _BESIDE = 0.15
@@ -75,8 +75,8 @@ def pull(body: Body, pose: Pose, axes: Array, towards: Array) -> Array:
     return np.asarray(np.einsum("kda,kda->kd", vectors[:, back], axes))
 
 
-def standing_precision(body: Body) -> Array:
-    """(D,) inverse variances of turns from the standing pose; 0 for the hips."""
+def usual_precision(body: Body) -> Array:
+    """(D,) inverse variances of turns from the usual pose; 0 for the hips."""
     joints = body.freedoms
     own = np.bincount(body.attachment.joints, minlength=len(body.scales))
     usual = np.array(_TURNS)[np.minimum(own, 2)]
@@ -92,7 +92,7 @@ def normal(body: Body, pose: Pose, seen: Seen) -> tuple[Array, Array, Array, Arr
     Returns
     -------
     matrix, right
-        With the pull to the standing pose.
+        With the pull to the usual pose.
     slopes, weighed
         (K, 3 M, P) derivative and (K, 3 M) residual, both times the root of the weights.
     """
@@ -106,7 +106,7 @@ def normal(body: Body, pose: Pose, seen: Seen) -> tuple[Array, Array, Array, Arr
     weighed = (left * roots[..., None]).reshape(len(left), -1)
     matrix = np.swapaxes(slopes, 1, 2) @ slopes
     right = (np.swapaxes(slopes, 1, 2) @ weighed[..., None])[..., 0]
-    _add_prior(matrix, right, standing_precision(body), pull(body, pose, axes, body.usual))
+    _add_prior(matrix, right, usual_precision(body), pull(body, pose, axes, body.usual))
     _hold_bends(matrix, right, body, pose)
     return matrix, right, slopes, weighed
 
@@ -121,11 +121,12 @@ def _add_prior(matrix: Array, right: Array, precision: Array, wanted: Array) -> 
 
 def _hold_bends(matrix: Array, right: Array, body: Body, pose: Pose) -> None:
     """Hold knees and elbows from bending the wrong way."""
-    for joint, sign in body.template.bends.items():
+    for joint, (sign, straight) in body.template.bends.items():
         if joint not in body.spans:
             continue
         at = 3 + body.spans[joint].start
-        beyond = np.maximum(-_STRAIGHT - sign * body.template.angle(joint, pose.turns[:, joint]), 0)
+        bent = sign * (body.template.angle(joint, pose.turns[:, joint]) - straight)
+        beyond = np.maximum(-_STRAIGHT - bent, 0.0)
         matrix[:, at, at] += np.where(beyond > 0, _WRONG_WAY**-2.0, 0.0)
         right[:, at] += sign * beyond * _WRONG_WAY**-2.0
 

@@ -26,9 +26,10 @@ _LOOKED_AT = 200
 _TRUNK = {"spine", "head"}
 _HELD = 0.5
 """Share of that within which a joint stays that a take holds in one place."""
-_BENDS = {"forearm": 1.0, "shank": -1.0}
-"""Whether what is below an elbow or a knee moves to the front or to the back when it bends."""
+_BENDS = {"forearm": ("upper arm", 1.0), "shank": ("thigh", -1.0)}
+"""What is above, and whether what is below moves to the front or to the back when it bends."""
 _TOLD = 0.5
+"""Cosine of the angle to there, from which on a hinge tells which way it bends."""
 STIFF = {"spine": 0.4, "clavicle": 0.25, "hand": 0.4, "foot": 0.5}
 """Radians, about a third of what joints of these segments can turn in all."""
 
@@ -98,17 +99,26 @@ class Template:
         return usual
 
     @cached_property
-    def bends(self) -> dict[int, float]:
-        """Knees and elbows that are hinges, with the sign of the angle by which they bend."""
+    def bends(self) -> dict[int, tuple[float, float]]:
+        """Knees and elbows that are hinges: by which sign they bend, at which angle they are straight.
+
+        Both of the angle (radians) that `angle` returns.
+        """
         hinges, found = self.hinges, {}
-        for name, part in segments(self.skeleton, self.standing_pose[0], {}).items():
-            ahead = _BENDS.get(name.removeprefix("left ").removeprefix("right "))
-            if ahead is None or part.joint not in hinges:
+        parts = segments(self.skeleton, self.standing_pose[0], {})
+        for name, part in parts.items():
+            side, _, kind = name.partition(" ")
+            above, ahead = _BENDS.get(kind, ("", 0.0))
+            if not above or part.joint not in hinges:
                 continue
-            swing = np.cross(hinges[part.joint], part.bone)
-            told = float(swing @ part.front) / max(float(np.linalg.norm(part.bone)), 1e-9)
+            bones = part.bone, parts[f"{side} {above}"].bone
+            below, before = (bone / max(float(np.linalg.norm(bone)), 1e-9) for bone in bones)
+            told = float(np.cross(hinges[part.joint], below) @ part.front)
             if abs(told) > _TOLD:
-                found[part.joint] = float(np.sign(told)) * ahead
+                sign = float(np.sign(told)) * ahead
+                bent = float(np.arccos(np.clip(below @ before, -1.0, 1.0)))
+                standing = rot.to_matrix(self.standing[part.joint][None])
+                found[part.joint] = (sign, float(self.angle(part.joint, standing)[0]) - sign * bent)
         return found
 
     @property
