@@ -59,6 +59,15 @@ def click_lane(workspace, marker: str, frame: int) -> None:
     click(plot.viewport(), QPointF(plot.x_of(frame), y))
 
 
+def answer(hands: Hands, key: Qt.Key) -> None:
+    """Answer the question that is asked."""
+    hands.see(lambda: hands.shows("confirm-question"))
+    question = hands.find("confirm-question")
+    question.activateWindow()
+    hands.see(question.isActiveWindow)
+    hands.key(key)
+
+
 def wait_for_edits(hands: Hands, count: int) -> None:
     bridge = hands.window.switching.front.bridge
     hands.see(lambda: not hands.window.jobs.running and len(bridge.shown.edits) == count)
@@ -236,12 +245,48 @@ def test_markers_closed_ask_first_where_they_were_edited(user, take):
     hands, workspace = user, opened(user, take)
     workspace.working.clear()
     hands.press("W", CTRL)
-    hands.see(lambda: hands.shows("confirm-question"))
-    question = hands.find("confirm-question")
-    question.activateWindow()
-    hands.see(question.isActiveWindow)
-    hands.key(Qt.Key.Key_Return)
+    answer(hands, Qt.Key.Key_Return)
     hands.see(lambda: hands.shows("markers-empty"))
     hands.come_back()
     assert not hands.window.bridge.state.markers
     assert not hands.window.bridge.state.sitting.marker_edits
+
+
+def test_a_single_short_gap_is_filled_over_earlier_edits(user, take):
+    hands, workspace = user, opened(user, take)
+    bridge = workspace.bridge
+    workspace.working.clear()
+    shortest = bridge.shown.gaps.shortest
+    count = len(bridge.shown.gaps.up_to(shortest))
+    hands.type("markers-longest", str(shortest))
+    hands.press("A", SHIFT)
+    wait_for_edits(hands, 1 + count)
+
+
+def test_markers_read_otherwise_lose_their_edits_after_a_question(user, take, tmp_path):
+    source = tmp_path / "marks.trc"
+    (markers,), _ = formats.read_any(take)
+    formats.write(markers, source)
+    hands, workspace = user, opened(user, source)
+    workspace.working.clear()
+    before = workspace.bridge.shown.source
+    hands.press("I", CTRL)
+    hands.see(lambda: hands.shows("import-report"))
+    report = hands.find("import-report")
+    report.activateWindow()
+    hands.see(report.isActiveWindow)
+    assert hands.text("import-name") == "marks.trc"
+    hands.type("reading-unit-text", str(2 * before.source.unit), enter=False)
+    hands.click("import-again")
+    answer(hands, Qt.Key.Key_Escape)
+    hands.see(lambda: not hands.shows("confirm-question"))
+    assert workspace.bridge.shown.source is before
+    hands.come_back()
+    hands.click("import-again")
+    answer(hands, Qt.Key.Key_Return)
+    hands.see(lambda: workspace.bridge.shown.source is not before)
+    after = workspace.bridge.shown
+    assert np.allclose(after.source.positions, 2 * before.positions, equal_nan=True)
+    assert not after.edits
+    assert len(hands.window.bridge.state.markers) == 1
+    hands.click("import-close")
