@@ -100,7 +100,7 @@ class Template:
 
     @cached_property
     def bends(self) -> dict[int, tuple[float, float]]:
-        """Knees and elbows that are hinges: by which sign they bend, at which angle they are straight.
+        """Knees and elbows that are hinges: the sign of their bend, and where they are straight.
 
         Both of the angle (radians) that `angle` returns.
         """
