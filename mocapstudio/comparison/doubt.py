@@ -21,6 +21,7 @@ _HARDLY_NEARER = 0.85
 _TEMPO = 3.0
 _LONG_SECONDS = 1.0
 _LONG_SHARE = 0.05
+_AT_THE_EDGE = 0.1
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,12 @@ class Doubt:
     warnings: tuple[str, ...]
 
 
-def doubt(aligned: PoseAlignment, reference_seconds: float, source_seconds: float) -> Doubt:
+def doubt(
+    aligned: PoseAlignment,
+    reference_seconds: float,
+    source_seconds: float,
+    band: int | None = None,
+) -> Doubt:
     """Test an alignment against wrong ones, and look at its path.
 
     A path can always be found, between two katas as between two performances of one. But of two
@@ -56,8 +62,9 @@ def doubt(aligned: PoseAlignment, reference_seconds: float, source_seconds: floa
     seconds = reference_seconds / max(shape[0] - 1, 1), source_seconds / max(shape[1] - 1, 1)
     warnings = (
         *_chance_warnings(disorder, nearness),
-        *_tempo_warnings(source_seconds / reference_seconds),
+        *_tempo_warnings(path, seconds),
         *_run_warnings(path, shape, seconds),
+        *_band_warnings(path, shape, band),
     )
     return Doubt(disorder, nearness, warnings)
 
@@ -105,12 +112,26 @@ def _chance_warnings(disorder: float, nearness: float) -> list[str]:
     return []
 
 
-def _tempo_warnings(ratio: float) -> list[str]:
+def _tempo_warnings(path: Path, seconds: tuple[float, float]) -> list[str]:
+    """Compare how long what answers to each other lasts; open ends may leave the rest out."""
+    lasting = (path[-1] - path[0]) * np.array(seconds)
+    ratio = float(max(lasting[1], seconds[1]) / max(lasting[0], seconds[0]))
     if ratio > _TEMPO:
         return [f"the source lasts {ratio:.1f} times as long as the reference"]
     if ratio < 1 / _TEMPO:
         return [f"the reference lasts {1 / ratio:.1f} times as long as the source"]
     return []
+
+
+def _band_warnings(path: Path, shape: tuple[int, int], band: int | None) -> list[str]:
+    """Say where a band of so many source frames kept the path from where it would have gone."""
+    if band is None:
+        return []
+    line = path[:, 0] * ((shape[1] - 1) / max(shape[0] - 1, 1))
+    share = float(np.mean(np.abs(path[:, 1] - line) > band - 1))
+    if share <= _AT_THE_EDGE:
+        return []
+    return [f"doubtful: the path keeps to the edge of the band for {share:.0%} of its length"]
 
 
 def _run_warnings(path: Path, shape: tuple[int, int], seconds: tuple[float, float]) -> list[str]:

@@ -73,7 +73,7 @@ def compare(
     poses = ours.resampled(one.span, frames[0]), theirs.resampled(other.span, frames[1])
     aligned = yield from scaled(align_poses(*poses, chosen, band), 0.2, 0.8)
     yield Progress(0.8, "weighing doubts")
-    doubted = doubt(aligned, _seconds(one), _seconds(other))
+    doubted = doubt(aligned, _seconds(one), _seconds(other), band)
     pair = _Pair(one, other, matched, ours, theirs)
     return _comparison(pair, aligned.alignment, frames, chosen, doubted)
 

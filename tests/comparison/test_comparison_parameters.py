@@ -128,3 +128,23 @@ def test_flags_are_read_as_detect_writes_them(tmp_path: Path) -> None:
 def test_flags_that_are_none_are_refused(tmp_path: Path, wrong: dict) -> None:
     with pytest.raises(FileError, match="detect --json"):
         read_flags(flags(tmp_path / "flags.json", **wrong))
+
+
+def test_a_band_that_is_in_the_way_is_said() -> None:
+    take = dance(8.0)
+    held = [np.repeat(one[:1], 90, axis=0) for one in (take.rotations, take.translations)]
+    late = take.with_motion(
+        np.concatenate([held[0], take.rotations]), np.concatenate([held[1], take.translations])
+    )
+    found = run(compare(take, late, ComparisonParameters(band=0.3)))
+    assert any("edge of the band" in one for one in found.warnings)
+    wide = run(compare(take, late, ComparisonParameters(band=4.0)))
+    assert not any("band" in one for one in wide.warnings)
+
+
+def test_a_part_need_not_last_as_long_as_the_whole() -> None:
+    take = dance(12.0)
+    part = take.with_motion(take.rotations[90:180], take.translations[90:180])
+    chosen = ComparisonParameters(begin="reference", end="reference")
+    assert not any("times as long" in one for one in run(compare(take, part, chosen)).warnings)
+    assert any("times as long" in one for one in run(compare(take, part)).warnings)
