@@ -10,7 +10,7 @@ from mocapstudio.comparison.online_features import F64
 
 # Okabe and Ito's colours, distinct to the colour-blind; a method keeps its own in all figures.
 _COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c8c8c", "#117733")
-_WIDTH, _HEIGHT, _LEFT, _TOP, _BOTTOM, _RIGHT = 390, 330, 44, 30, 44, 24
+_WIDTH, _HEIGHT, _LEFT, _TOP, _BOTTOM, _RIGHT = 390, 340, 52, 30, 54, 24
 _LINE = 15
 _STEPS = (0.01, 0.02, 0.05, 0.1, 0.2)
 
@@ -56,6 +56,13 @@ def share_curves(
         f"{100 * share:.0f} %</text>"
         for share in (0.2, 0.4, 0.6, 0.8, 1.0)
     ]
+    middle = _TOP + high / 2
+    parts += [
+        f'<text x="{x(0.5):.1f}" y="{_TOP + high + 31:.1f}" text-anchor="middle">'
+        "share of the movement seen</text>",
+        f'<text x="12" y="{middle:.1f}" text-anchor="middle"'
+        f' transform="rotate(-90 12 {middle:.1f})">quality in %</text>',
+    ]
     for i, (name, curve) in enumerate(curves.items()):
         colour = _COLOURS[methods.index(name) % len(_COLOURS)]
         points = " ".join(
@@ -69,8 +76,7 @@ def share_curves(
             f'<text x="{_LEFT + 24}" y="{line}">{html.escape(name)}, mean'
             f" {100 * float(curve.mean()):.1f}</text>"
         )
-    caption = "quality in % over the share of the movement seen"
     return (
         f'<figure><svg viewBox="0 0 {_WIDTH} {_HEIGHT}" width="{_WIDTH}" height="{_HEIGHT}">'
-        f"{''.join(parts)}</svg><figcaption>{caption}</figcaption></figure>"
+        f"{''.join(parts)}</svg></figure>"
     )
