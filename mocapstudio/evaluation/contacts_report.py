@@ -141,7 +141,9 @@ def _slide_table(folder: str, rows: Sequence[SlideRow]) -> Table:
     made_rows = []
     for method in methods:
         own = [row for row in rows if row.method == method]
-        slides, jerks = [row.slide for row in own], [row.jerk for row in own]
+        slides = [row.slide for row in own]
+        # Who stands throughout has no edges.
+        jerks = [row.jerk for row in own if np.isfinite(row.jerk)] or [float("nan")]
         made_rows.append(
             (
                 method,
@@ -149,8 +151,8 @@ def _slide_table(folder: str, rows: Sequence[SlideRow]) -> Table:
                 number(max(slides), 4),
                 number(max(row.worst_step for row in own), 2),
                 number(max(row.gap for row in own), 2),
-                number(float(np.nanmean(jerks)), 2),
-                number(float(np.nanmax(jerks)), 2),
+                number(float(np.mean(jerks)), 2),
+                number(max(jerks), 2),
                 ", ".join(row.take for row in own if _jerks(row)) or "–",
                 number(float(np.mean([row.turned for row in own])), 2),
                 number(float(np.mean([row.others for row in own])), 2),

@@ -110,9 +110,7 @@ def to_contact(
         raise WrongRecordError('has a "confidence" that is no number')
     if not 0 <= confidence <= 1:
         raise WrongRecordError('has a "confidence" outside 0..1')
-    name = one.get("id", f"contact-{number}")
-    if not isinstance(name, str):
-        raise WrongRecordError('has an "id" that is no text')
+    name = _text(one, "id") if "id" in one else f"contact-{number}"
     return Contact(
         name,
         *key,
@@ -158,10 +156,11 @@ def _name(one: Mapping[str, Any]) -> Point | None:
 
 def _text(one: Mapping[str, Any], key: str) -> str:
     value = one.get(key)
-    if not isinstance(value, str):
-        raise WrongRecordError(
-            f'has no "{key}"' if value is None else f'has a "{key}" that is no text'
-        )
+    if value is None:
+        raise WrongRecordError(f'has no "{key}"')
+    # Half of a surrogate pair passes as JSON and cannot be written again.
+    if not isinstance(value, str) or any("\ud800" <= sign <= "\udfff" for sign in value):
+        raise WrongRecordError(f'has a "{key}" that is no text')
     return value
 
 
