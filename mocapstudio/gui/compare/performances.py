@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, Qt
 from PySide6.QtGui import QColor, QPainter, QPixmap
-from PySide6.QtWidgets import QFrame, QVBoxLayout
+from PySide6.QtWidgets import QFrame, QScrollArea, QVBoxLayout
 
 from mocapstudio.gui import theme
 from mocapstudio.gui.actions import Actions
@@ -20,6 +20,9 @@ from mocapstudio.review.comparing import Compared, ComparingState
 from mocapstudio.review.comparing_state import only_view_differs
 
 Index = QModelIndex | QPersistentModelIndex
+
+_SAID = 92
+"""Pixels for what makes a comparison doubtful; more of it is scrolled to."""
 
 _BUTTONS = ("compare-swap", "compare-reference", "compare-parameters")
 
@@ -125,6 +128,12 @@ def _dot(colour: str) -> QPixmap:
     return made
 
 
+def _weight(warning: str) -> int:
+    """Doubts about the alignment come first, then what its path does, then what was compared."""
+    ways = ("doubtful", "answer to", "times as long")
+    return next((at for at, words in enumerate(ways) if words in warning), len(ways))
+
+
 class PerformancesView(QFrame):
     """Reference, ranking of the sources, and what makes the chosen one doubtful.
 
@@ -165,8 +174,16 @@ class PerformancesView(QFrame):
         adding = [actions.tool_button(n) for n in ("compare-remove", "compare-sources")]
         column.addWidget(header("Sources", *adding))
         column.addWidget(self.table, 1)
-        self._warnings.setContentsMargins(12, 6, 12, 8)
-        column.addWidget(self._warnings)
+        self._warnings.setContentsMargins(12, 6, 8, 8)
+        self._warnings.setAlignment(Qt.AlignmentFlag.AlignTop)
+        self._said = QScrollArea()
+        self._said.setObjectName("warnings-scroll")
+        self._said.setWidgetResizable(True)
+        self._said.setFrameShape(QFrame.Shape.NoFrame)
+        self._said.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self._said.setFixedHeight(_SAID)
+        self._said.setWidget(self._warnings)
+        column.addWidget(self._said)
         self.table.clicked.connect(lambda index: self._choose(index))
         bridge.changed.connect(self._follow)
         self._show(bridge.state)
@@ -194,10 +211,10 @@ class PerformancesView(QFrame):
         if row >= 0:
             self.table.selectRow(row)
         comparison, failure = state.comparison, "" if state.source is None else state.source.failure
-        doubts = () if comparison is None else comparison.warnings
+        doubts = [] if comparison is None else sorted(comparison.warnings, key=_weight)
         text = failure and f"Not compared: {failure}"
         if doubts:
-            text = "; ".join(doubts)
-            text = text[:1].upper() + text[1:]
+            text = "\n".join(one[:1].upper() + one[1:] + "." for one in doubts)
         self._warnings.setText(text)
-        self._warnings.setVisible(bool(text))
+        self._said.setVisible(bool(text))
+        self._said.verticalScrollBar().setValue(0)
