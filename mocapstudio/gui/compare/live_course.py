@@ -17,7 +17,6 @@ from mocapstudio.gui.plots.axes import small_font
 from mocapstudio.gui.plots.ticks import value_ticks
 
 _RIGHT = int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
-_TITLE = int(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
 _LEAST_SECONDS = 0.5
 _LEAST_COST = 0.05
 
@@ -34,8 +33,7 @@ class _Curve(LivePlot):
     """
 
     def __init__(self, bridge: CompareBridge, live: LiveBridge, title: str) -> None:
-        super().__init__(bridge, live)
-        self._title = title
+        super().__init__(bridge, live, title)
         self.setMinimumHeight(70)
 
     def _values(self) -> Array:
@@ -48,14 +46,11 @@ class _Curve(LivePlot):
         raise NotImplementedError
 
     def draw(self, p: QPainter) -> None:
-        """Draw title, marks and curve."""
+        """Draw marks and curve."""
         look, area = themes.current(), self.area
         values = self._values()
         known = values[np.isfinite(values)]
         low, high = self._limits(known)
-        p.setFont(small_font(11))
-        p.setPen(QColor(look.muted))
-        p.drawText(QRectF(LEFT, 4, area.width(), 16), _TITLE, self._title)
         p.setFont(small_font(10))
         scale = area.height() / max(high - low, 1e-9)
         for value, words in value_ticks(low, high, max(2, int(area.height() / 28))):

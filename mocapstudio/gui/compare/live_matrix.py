@@ -17,7 +17,6 @@ from mocapstudio.gui.plots.axes import small_font
 from mocapstudio.gui.plots.ticks import time_ticks
 
 _RIGHT = int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
-_TITLE = int(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
 _MOST_POINTS = 1500
 
 
@@ -33,7 +32,7 @@ class LiveMatrix(LivePlot):
     """
 
     def __init__(self, bridge: CompareBridge, live: LiveBridge) -> None:
-        super().__init__(bridge, live)
+        super().__init__(bridge, live, "↑ reference   → performer")
         self.setObjectName("live-matrix")
         self.setMinimumWidth(200)
         self.setToolTip(
@@ -59,11 +58,8 @@ class LiveMatrix(LivePlot):
 
     def draw(self, p: QPainter) -> None:
         """Draw distances, path and head."""
-        look, area, shown = themes.current(), self.area, self._live.shown
+        area, shown = self.area, self._live.shown
         assert shown.history is not None
-        p.setFont(small_font(11))
-        p.setPen(QColor(look.muted))
-        p.drawText(QRectF(LEFT, 4, area.width(), 16), _TITLE, "↑ reference   → performer")
         if shown.history.frames:
             p.save()
             p.setClipRect(area)

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QWidget
 from mocapstudio.gui import theme as themes
 from mocapstudio.gui.compare.bridge import CompareBridge
 from mocapstudio.gui.compare.live_bridge import LiveBridge, LiveShown
+from mocapstudio.gui.compare.live_words import phase_words
 from mocapstudio.gui.plots.axes import small_font
 from mocapstudio.gui.plots.ticks import time_ticks
 
@@ -18,6 +19,7 @@ LEFT, RIGHT = 46.0, 16.0
 _BOTTOM = 18.0
 _EVERY_MS = 80
 _GROWTH = 1.25
+_TITLE = int(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
 _CENTRE = int(Qt.AlignmentFlag.AlignCenter)
 
 Array = NDArray[np.float64]
@@ -32,14 +34,16 @@ class LivePlot(QWidget):
     ----------
     bridge, live
         Where state comes from.
+    title
+        What it shows.
     """
 
     asked = Signal(float)
     """Second of the action that the user wants to see."""
 
-    def __init__(self, bridge: CompareBridge, live: LiveBridge) -> None:
+    def __init__(self, bridge: CompareBridge, live: LiveBridge, title: str) -> None:
         super().__init__()
-        self._bridge, self._live = bridge, live
+        self._bridge, self._live, self._title = bridge, live, title
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
         self.setCursor(Qt.CursorShape.PointingHandCursor)
         # Figures and heads move at every frame; pictures that grow need not.
@@ -117,9 +121,17 @@ class LivePlot(QWidget):
         p = QPainter(self)
         p.fillRect(self.rect(), QColor(look.panel))
         p.fillRect(self.area, QColor(look.field))
-        if self._live.shown.history is not None:
+        p.setFont(small_font(11))
+        p.setPen(QColor(look.muted))
+        p.drawText(QRectF(LEFT, 4, self.area.width(), 16), _TITLE, self._title)
+        history = self._live.shown.history
+        if history is not None:
             self.draw(p)
             self._draw_time(p)
+        if history is None or not history.frames:
+            p.setFont(small_font(11))
+            p.setPen(QColor(look.faint))
+            p.drawText(self.area, _CENTRE, phase_words(self._live.shown).lower())
         if self._live.shown.looked is not None:
             x = self.x_of(self._live.shown.looked)
             p.setPen(QPen(QColor(look.playhead), 1, Qt.PenStyle.DashLine))
