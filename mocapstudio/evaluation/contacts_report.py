@@ -84,14 +84,15 @@ def _takes(cases: Sequence[ContactCase]) -> str:
 
 
 def _chosen(data: Sequence[Path], limit: int) -> list[tuple[str, Path]]:
-    counted: dict[str, int] = {}
-    chosen = []
+    """At most `limit` takes of each folder, spread over the whole of it."""
+    folders: dict[str, list[Path]] = {}
     for entry in entries(tuple(data), OWN):
-        folder = entry.path.resolve().parent.name
-        counted[folder] = counted.get(folder, 0) + 1
-        if counted[folder] <= limit:
-            chosen.append((folder, entry.path))
-    return chosen
+        folders.setdefault(entry.path.resolve().parent.name, []).append(entry.path)
+    return [
+        (folder, paths[i * len(paths) // min(limit, len(paths))])
+        for folder, paths in folders.items()
+        for i in range(min(limit, len(paths)))
+    ]
 
 
 def _measured(path: Path) -> list[SlideRow]:
