@@ -17,7 +17,6 @@ from PySide6.QtWidgets import (
 from mocapstudio.cleaning.model import Neighbour
 from mocapstudio.gui import icons, theme, wording
 from mocapstudio.gui.actions import Actions
-from mocapstudio.gui.dialogs.neighbour_alignment import NeighbourAlignmentDialog
 from mocapstudio.gui.document import DocumentBridge, UiState, only_frame_differs
 from mocapstudio.gui.inspector.neighbours import NeighbourList
 from mocapstudio.gui.queue.model import VERDICT_ICONS
@@ -178,6 +177,9 @@ class FlagPage(QWidget):
         item, analysis = state.selected, state.analysis
         if item is None or analysis is None or reason.profile is None:
             return
+        # It brings compiled kernels along, which would hold up the first window.
+        from mocapstudio.gui.dialogs.neighbour_alignment import NeighbourAlignmentDialog
+
         near = reason.neighbours or ()
         dialog = NeighbourAlignmentDialog(
             self._bridge, analysis, item.flag, reason.profile, near, self.window()
