@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 _TURNING = np.deg2rad(40.0)
 """Radians a second at which a foot turns."""
-_TURNED = np.deg2rad(45.0)
+_TURNED = np.deg2rad(35.0)
 """Radians by which it turns in all."""
 _SMOOTHING = 0.025
 """Seconds: standard deviation of the Gaussian over headings."""
