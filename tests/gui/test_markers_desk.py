@@ -9,7 +9,7 @@ import pytest
 from hands import CTRL, Hands
 from mouse import click, drag
 from PySide6.QtCore import QPointF, Qt
-from PySide6.QtWidgets import QTableView
+from PySide6.QtWidgets import QTableView, QToolButton
 
 from mocapstudio import formats
 from mocapstudio.motion.declared import Declared
@@ -290,3 +290,29 @@ def test_markers_read_otherwise_lose_their_edits_after_a_question(user, take, tm
     assert not after.edits
     assert len(hands.window.bridge.state.markers) == 1
     hands.click("import-close")
+
+
+def test_the_theme_changes_with_edits_in_the_list(user, take):
+    hands, workspace = user, opened(user, take)
+    hands.press("A", SHIFT)
+    hands.see(lambda: not hands.window.jobs.running and len(workspace.bridge.shown.edits) > 1)
+    workspace.working.clear()
+    workspace.inspector.show_edits()
+    for _ in range(4):
+        hands.menu("View", "Light Theme")
+        hands.qtbot.wait(50)
+        assert hands.shows("marker-edit-mute")
+    assert workspace.bridge.shown.edits
+
+
+def test_commands_wait_for_markers(user, take):
+    hands, actions = user, user.window.actions_
+    hands.window.switching.show("markers")
+    names = ("markers-fill-best", "markers-next", "markers-exchange", "markers-solve", "export")
+    assert not any(actions[name].isEnabled() for name in names)
+    buttons = [hands.window.findChild(QToolButton, f"button-{name}") for name in names]
+    assert not any(button.isEnabled() for button in buttons)
+    workspace = opened(hands, take)
+    assert all(actions[name].isEnabled() for name in names)
+    workspace.bridge.choose(None)
+    assert not actions["markers-exchange"].isEnabled()

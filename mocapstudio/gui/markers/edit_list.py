@@ -8,6 +8,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFrame, QScrollArea, QVBoxLayout, QWidget
 
 from mocapstudio.gui import wording
+from mocapstudio.gui.document import UiState
 from mocapstudio.gui.markers.bridge import MarkersBridge, MarkersShown
 from mocapstudio.gui.widgets.cards import icon_button, make_card
 from mocapstudio.gui.widgets.parts import Hint, label
@@ -29,6 +30,8 @@ class EditList(QScrollArea):
         self._bridge = bridge
         self._hint = Hint(self, "markers-edits-hint")
         bridge.changed.connect(self._follow)
+        # Not from within the change of style: cards must not go while Qt walks over them.
+        bridge.desk.ui_changed.connect(self._follow_ui)
         self.refresh()
 
     def refresh(self) -> None:
@@ -50,6 +53,10 @@ class EditList(QScrollArea):
         column.addStretch(1)
         self.setWidget(body)
         self._hint.say("" if groups else "What is filled, exchanged or taken away\nis listed here.")
+
+    def _follow_ui(self, old: UiState, new: UiState) -> None:
+        if old.theme != new.theme:
+            self.refresh()
 
     def _follow(self, old: MarkersShown, new: MarkersShown) -> None:
         same = len(old.edits) == len(new.edits) and all(

@@ -43,10 +43,6 @@ class MarkersInspector(QFrame):
         column.addWidget(self._tabs)
         bridge.changed.connect(self._follow)
 
-    def restyle(self) -> None:
-        """Take over the colours of the theme in force."""
-        self._edits.refresh()
-
     def show_edits(self) -> None:
         """Show the list of edits."""
         self._tabs.setCurrentWidget(self._edits)

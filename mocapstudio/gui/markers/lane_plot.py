@@ -79,7 +79,7 @@ class LanePlot(TimePlot):
         table = np.array([cell_colour(look, cell).rgb() for cell in Cell], dtype=np.uint32)
         rows = table[pooled(self._cells, shown.start, shown.length, width)].T
         image = np.full((height, width), QColor(look.field).rgb(), dtype=np.uint32)
-        thick = max(self.rows.row_height - (1 if self.rows.row_height > 3 else 0), 1)
+        thick = max(self.rows.row_height - (1 if self.rows.row_height > 5 else 0), 1)
         for row, top in enumerate(self.rows.tops):
             image[top : top + thick] = rows[row]
         picture = QImage(image.data, width, height, 4 * width, QImage.Format.Format_RGB32)

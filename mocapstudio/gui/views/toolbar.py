@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QAction
-from PySide6.QtWidgets import QComboBox, QLabel, QSlider, QToolBar, QWidget
+from PySide6.QtWidgets import QComboBox, QLabel, QSlider, QToolBar, QToolButton, QWidget
 
 from mocapstudio.cleaning.parameters import CALIBRATED, PAPER, schema
 from mocapstudio.gui.actions import Actions
@@ -74,6 +74,10 @@ class DeskToolBar(QToolBar):
         for workspace, tools in self._own.items():
             for one in tools:
                 one.setVisible(workspace == name)
+                button = self.widgetForAction(one)
+                if isinstance(button, QToolButton) and button.defaultAction() is not None:
+                    # Whatever changes about its place in the bar switches a widget on.
+                    button.setEnabled(button.defaultAction().isEnabled())
 
     def _for_review(self, *tools: QWidget | None) -> None:
         made = [self.addSeparator() if one is None else self.addWidget(one) for one in tools]

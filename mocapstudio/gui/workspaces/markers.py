@@ -118,7 +118,7 @@ class MarkersWorkspace(Workspace):
         """Follow the theme."""
         super().changeEvent(event)
         if event.type() in (QEvent.Type.StyleChange, QEvent.Type.PaletteChange):
-            for part in (self.table, self.inspector, self.lanes, self.curves, self._empty):
+            for part in (self.table, self.lanes, self.curves, self._empty):
                 part.restyle()
 
     def _lay_out(self) -> None:
