@@ -23,6 +23,7 @@ from mocapstudio.gui.contacts.measuring import measured
 from mocapstudio.gui.contacts.reading import Readings
 from mocapstudio.gui.contacts.target_fields import TargetFields
 from mocapstudio.gui.contacts.targets import KINDS, converted, kind_of
+from mocapstudio.gui.contacts.troubles import contradicted, unmet_words
 from mocapstudio.gui.widgets.fields import NumberField
 from mocapstudio.gui.widgets.parts import header, label, rule
 from mocapstudio.motion.take import Take
@@ -174,10 +175,10 @@ class ContactInspector(QFrame):
                                  else (after.mean_slide, after.worst_gap)))  # fmt: skip
         short = next((u for u in self._bridge.ui.unreached if u.contact == contact.id), None)
         if short is not None and not trouble:
-            trouble = (
-                f"Out of reach by {short.millimetres:.0f} mm in {short.frames} frames: the nearest"
-                " pose was taken."
-            )
+            trouble = f"{_sentence(unmet_words(short))}: the nearest pose was taken."
+        against = contradicted(contact, self._bridge.contacts)
+        if against:
+            trouble = f"{trouble} {_sentence(against)}: they cannot both be met.".strip()
         self._trouble.setText(trouble)
         self._trouble.setVisible(bool(trouble))
 
@@ -313,6 +314,10 @@ class _Figures(QWidget):
         for name, (unit, digits, *values) in lines.items():
             for cell, value in zip(self._cells[name], values, strict=True):
                 cell.setText("–" if value is None else f"{value:.{digits}f} {unit}")  # type: ignore[attr-defined]
+
+
+def _sentence(words: str) -> str:
+    return words[:1].upper() + words[1:]
 
 
 def _frame_field(name: str) -> NumberField:

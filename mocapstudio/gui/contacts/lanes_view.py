@@ -16,6 +16,7 @@ from mocapstudio.gui.contacts.lane_plot import LanePlot
 from mocapstudio.gui.contacts.lanes import Key, Lane, key_of, lanes_of
 from mocapstudio.gui.contacts.measuring import lane_slides
 from mocapstudio.gui.contacts.reading import Readings
+from mocapstudio.gui.contacts.troubles import contradicted, unmet_words
 from mocapstudio.gui.plots.axes import TIME_AXIS_HEIGHT, small_font
 from mocapstudio.gui.plots.time_plot import LEFT_GUTTER, RIGHT_GUTTER
 from mocapstudio.gui.plots.time_range import TimeRange
@@ -223,7 +224,10 @@ class LanesView(QWidget):
         if trouble:
             words.append(trouble)
         elif short is not None:
-            words.append(f"out of reach by {short.millimetres:.0f} mm in {short.frames} frames")
+            words.append(unmet_words(short))
+        against = contradicted(contact, self._bridge.contacts)
+        if against:
+            words.append(against)
         return "\n".join(words)
 
 
@@ -262,7 +266,7 @@ class _Gutter(QWidget):
         metrics = QFontMetricsF(small_font())
         for row, (key, words) in enumerate(self._words.items()):
             p.setPen(QColor(look.text if key in self._marked else look.muted))
-            room = self._box(row).adjusted(8, 0, -10, 0)
+            room = self._box(row).adjusted(*((8, 0, -10, 0) if self._right else (6, 0, -1, 0)))
             text = metrics.elidedText(words, Qt.TextElideMode.ElideRight, room.width())
             p.drawText(room, int(side | Qt.AlignmentFlag.AlignVCenter), text)
         p.end()

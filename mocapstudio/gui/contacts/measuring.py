@@ -69,10 +69,11 @@ def lane_slides(reading: Reading, contacts: Iterable[Contact]) -> dict[Key, str]
             lanes.setdefault(key_of(one), []).append(one)
     found = {}
     for key, own in lanes.items():
-        words = f"{measured(reading, own, after=False).mean_slide:.1f}"
+        before = measured(reading, own, after=False).mean_slide
+        found[key] = f"{before:.1f}"
         if reading.solved:
-            words += f" → {measured(reading, own, after=True).mean_slide:.1f}"
-        found[key] = words
+            after = measured(reading, own, after=True).mean_slide
+            found[key] = f"{before:.{int(before < 10)}f} → {after:.{int(after < 100)}f}"
     return found
 
 
