@@ -83,13 +83,17 @@ class _Message:
 class _Runner(QRunnable):
     """Drives one generator on a thread of the pool and reports by one signal."""
 
-    def __init__(self, job: Job, work: Work, report: Callable[[_Message], None]) -> None:
+    def __init__(
+        self, job: Job, work: Work, report: Callable[[_Message], None], *, awaited: bool
+    ) -> None:
         super().__init__()
         self.setAutoDelete(False)
         self._job, self._work, self._report = job, work, report
+        self._awaited = awaited
 
     def run(self) -> None:
-        _yield_to_the_desk()
+        if not self._awaited:
+            _yield_to_the_desk()
         # Whatever goes wrong in the work must reach the desk, or the job would never end there.
         try:
             message = self._drive()
@@ -132,6 +136,9 @@ class Jobs(QObject):
         super().__init__(parent)
         self._pool = QThreadPool(self)
         self._pool.setMaxThreadCount(3)
+        # A thread that has lowered its priority cannot raise it again.
+        self._prompt = QThreadPool(self)
+        self._prompt.setMaxThreadCount(1)
         self._running: dict[Job, tuple[_Runner, Callable[[Any], None], Callable[..., None]]] = {}
         self._arrived.connect(self._receive, Qt.ConnectionType.QueuedConnection)
 
@@ -148,6 +155,7 @@ class Jobs(QObject):
         on_failure: Callable[[BaseException], None],
         *,
         key: str | None = None,
+        awaited: bool = False,
     ) -> Job:
         """Start work on a thread.
 
@@ -162,14 +170,17 @@ class Jobs(QObject):
             job was cancelled.
         key
             See `Job`; by default a key of its own.
+        awaited
+            Whether the user waits for it with a hand on the mouse: such work is short and need not
+            yield to the desk.
         """
         job = Job(title, key or f"{title} {id(work)}", self)
         for other in self.running:
             if key is not None and other.key == key:
                 other.cancel()
-        runner = _Runner(job, work, self._arrived.emit)
+        runner = _Runner(job, work, self._arrived.emit, awaited=awaited)
         self._running[job] = (runner, on_result, on_failure)
-        self._pool.start(runner)
+        (self._prompt if awaited else self._pool).start(runner)
         self.changed.emit()
         return job
 
@@ -182,7 +193,7 @@ class Jobs(QObject):
 
     def wait(self, seconds: float) -> bool:
         """Wait for the threads to end; tell whether they did."""
-        return self._pool.waitForDone(int(seconds * 1000))
+        return all(one.waitForDone(int(seconds * 1000)) for one in (self._pool, self._prompt))
 
     def _receive(self, message: _Message) -> None:
         job = message.job
