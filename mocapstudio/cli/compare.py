@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -82,6 +83,8 @@ def compare(
     if figure is not None:
         with work.going_on():
             _draw(job.done, figure)
+    for name in job.unused_flags():
+        print(f"warning: {comparing.mask}: -: {name} is not compared", file=sys.stderr)
     if json_path is None:
         from mocapstudio.cli.comparison_table import show
 

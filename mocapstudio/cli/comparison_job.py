@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -106,6 +107,7 @@ class ComparisonJob:
         self.path, self.chosen, self.names = path, chosen, names
         self.reference = read_recordings(work, path)[0]
         self.flags = flags
+        self._masked: set[str] = set()
         self.mask = self._mask(self.reference, path)
         self.given = self._given(labels)
         self.labels = self._segments(labels)
@@ -141,6 +143,7 @@ class ComparisonJob:
         ranking = sorted(self.done, key=lambda one: one.comparison.dissimilarity)
         known = _error(segments.suggested(self.reference), self.labels) if self.given else None
         return {
+            "parameters": asdict(self.chosen),
             "reference": {
                 "path": str(self.path),
                 "name": self.reference.name,
@@ -154,12 +157,17 @@ class ComparisonJob:
 
     def _mask(self, recording: Recording, path: Path) -> NDArray[np.bool_] | None:
         flagged = self.flags.get(path.stem, ())
+        self._masked.add(path.stem)
         if not flagged:
             return None
         try:
             return mask_of(recording, flagged, self.chosen.features)
         except MocapError as error:
             raise FileError(path, f"is not what was flagged: {error}") from error
+
+    def unused_flags(self) -> list[str]:
+        """Names of takes of which flags were given and that were not compared."""
+        return sorted(set(self.flags) - self._masked)
 
     def _given(self, path: Path | None) -> list[Labels]:
         return [] if path is None else read_labels(path)

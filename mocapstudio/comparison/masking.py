@@ -53,7 +53,7 @@ def mask_of(
     Raises
     ------
     MocapError
-        If the recording has no such joint.
+        If the recording has no such joint or frames.
     """
     markers = isinstance(recording, MarkerTake)
     names = recording.labels if isinstance(recording, MarkerTake) else recording.skeleton.names
@@ -61,6 +61,10 @@ def mask_of(
     below = {} if markers or features == ROTATIONS else _below(recording)
     mask = np.zeros((recording.frames, len(names)), bool)
     for one in flagged:
+        if one.end > recording.frames:
+            raise MocapError(
+                f"{recording.name} has {recording.frames} frames, and a flag ends at {one.end}"
+            )
         for name in set(one.joints) - set(ROOT_ROWS):
             if name not in index:
                 raise MocapError(f"{recording.name} has no joint or marker {name}")

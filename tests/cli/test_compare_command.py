@@ -192,6 +192,10 @@ def test_open_ends_bands_and_masks_are_options(mocapstudio, kata, tmp_path: Path
     arm = ("--mask", mask, "--band", "1.5", "--tolerance", "0.2", "--features", "rotations")
     found = compared(mocapstudio, kata["reference"], kata["twin"], *arm)
     assert found["sources"][0]["dissimilarity"] < 1e-5
+    assert found["parameters"]["masked"]
+    assert found["parameters"]["band"] == 1.5
+    done = mocapstudio("compare", kata["reference"], kata["pause"], "--mask", mask)
+    assert "twin is not compared" in done.stderr
     part = compared(mocapstudio, kata["reference"], kata["twin"], "--subsequence", "reference")
     assert part["sources"][0]["path_pairs"][0] == [0, 0]
 

@@ -100,6 +100,8 @@ def test_a_flag_masks_the_rest_of_its_limb_where_positions_are_compared() -> Non
     assert not mask[:10].any()
     assert not mask[20:].any()
     assert set(names[mask_of(take, flagged, ROTATIONS)[15]]) == {"LeftArm"}
+    with pytest.raises(MocapError, match="120 frames"):
+        mask_of(take, [Flagged(("LeftArm",), 100, 200)], "box")
     with pytest.raises(MocapError, match="Wing"):
         mask_of(take, [Flagged(("Wing",), 0, 5)], "box")
 
