@@ -233,5 +233,8 @@ class FilesDesk(QObject):
         if force:
             self._journalling.swap_by_force(document)
         self.opening.greet(document)
-        if document.state.markers and not document.state.scene.performers:
+        state = document.state
+        if state.markers and not state.scene.performers:
             self.markers.show()
+        elif state.comparison.reference is not None and not state.everyone:
+            self._window.switching.show("compare")
