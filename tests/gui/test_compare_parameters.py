@@ -107,3 +107,16 @@ def test_the_matrix_shows_costs_and_the_online_path(hands, compare):
     assert abs(nearest[0] - state.frame) < 15, "both alignments are of one movement"
     hands.choose("matrix-kind", "after the fact")
     assert hands.find("matrix-kind").currentText() == "after the fact"
+
+
+def test_a_session_that_only_compares_opens_in_its_workspace(hands, compare, tmp_path):
+    path = tmp_path / "two.mocapstudio"
+    hands.press("S", CTRL)
+    hands.answer_file_dialog(path)
+    hands.see(path.is_file)
+    hands.window.files.begin_anew()
+    hands.press("1", CTRL)
+    hands.see(lambda: hands.window.switching.name == "review")
+    hands.window.files.open_paths([path])
+    hands.see(lambda: hands.window.switching.name == "compare")
+    hands.see(lambda: compare.bridge.state.linked is not None, 60)
