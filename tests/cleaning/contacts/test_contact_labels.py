@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -44,3 +45,26 @@ def test_joined_hands_of_a_pair(data: Path) -> None:
             joined[contact.start : contact.end] = True
     assert joined[490:600].mean() == pytest.approx(1.0, abs=0.05)
     assert not joined[:300].any()
+
+
+def test_hands_that_were_seen_to_hold_each_other(data: Path) -> None:
+    record = json.loads((LABELS / "hands" / "60_11.json").read_text())
+    take, partner = (formats.read(data / record[key])[0][0] for key in ("take", "partner"))
+    found = detect_contacts(take, (partner,))
+    hit, false, missed = 0, 0, 0
+    for pair, spans in record["held"].items():
+        truth, sure, claimed = (np.zeros(take.frames, bool) for _ in range(3))
+        sure[slice(*record["span"])] = True
+        for start, end in record["unsure"].get(pair, []):
+            sure[start:end] = False
+        for start, end in spans:
+            truth[start:end] = True
+        for contact in found:
+            target = contact.target
+            if isinstance(target, Following) and pair == f"{contact.joint} {target.joint}":
+                claimed[contact.start : contact.end] = True
+        hit += int(np.sum(claimed & truth & sure))
+        false += int(np.sum(claimed & ~truth & sure))
+        missed += int(np.sum(~claimed & truth & sure))
+    assert hit / (hit + false) > 0.95
+    assert hit / (hit + missed) > 0.85
