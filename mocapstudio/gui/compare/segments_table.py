@@ -139,7 +139,7 @@ class SegmentsView(QFrame):
         self.setProperty("role", "panel")
         self._bridge = bridge
         self.model = SegmentsModel(bridge)
-        self.table = make_table("segments-table", self.model, (0, 44, 46, 54, 60), 24)
+        self.table = make_table("segments-table", self.model, (0, 54, 50, 54, 60), 24)
         self.table.setTextElideMode(Qt.TextElideMode.ElideRight)
         self.table.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
         self.table.setEditTriggers(QTableView.EditTrigger.DoubleClicked)

@@ -30,7 +30,8 @@ from mocapstudio.motion.take import Take
 from mocapstudio.review.comparing import ComparingState
 from mocapstudio.review.comparing_state import only_view_differs
 
-_ROOM = 1.35
+_ROOM = 1.2
+_CAPTION = 46
 _GIRTH = {Part.REFERENCE: 1.0, Part.SOURCE: 1.0, Part.OTHER: 0.6}
 _TRAIL_STEPS = 16
 _TRAIL = 0.5
@@ -256,9 +257,14 @@ class StageView(QWidget):
         self.camera.look("three-quarter", one.actor.heading(frame))
         width, height = self.left.size_in_pixels
         ground = points * (1, 0, 1) + (0, one.actor.level, 0)
-        self.camera.frame(np.concatenate([points, ground]), width / height, _ROOM)
+        # Caption and buttons lie over the upper edge: she stands below them.
+        free = max(height - _CAPTION, 0.5 * height)
+        room = _ROOM * height / free
+        self.camera.frame(np.concatenate([points, ground]), width / height, room)
+        rise = 0.5 * (height - free) * self.camera.metres_per_pixel(height)
         self._anchor = one.actor.followed[frame]
-        self.camera.focal = np.array([self._anchor[0], self.camera.focal[1], self._anchor[2]])
+        middle = self.camera.focal[1] + rise
+        self.camera.focal = np.array([self._anchor[0], middle, self._anchor[2]])
 
     # -- the picture
 
