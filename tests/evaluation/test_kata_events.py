@@ -11,6 +11,7 @@ import pytest
 from made_takes import paced, walking
 
 from mocapstudio import formats
+from mocapstudio.cli.app import run as command
 from mocapstudio.comparison.labels import Labels, write_labels
 from mocapstudio.comparison.model import Segment
 from mocapstudio.evaluation.kata_events import METHODS, PLAIN, event_table, found_events
@@ -70,3 +71,12 @@ def test_performances_that_share_nothing_are_refused(folder: Path, tmp_path: Pat
     write_labels(labels, tmp_path / "strange.json")
     with pytest.raises(SkeletonMismatchError, match="cannot be compared"):
         run(found_events([folder, tmp_path], [tmp_path / "strange.json"]))
+
+
+def test_events_are_for_alignment_alone(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["evaluate", "detection", "--data", str(folder), "--events", str(folder / "marks.json")]
+    assert command(words) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("error: ")
+    assert "--events" in said
+    assert said.count("\n") == 1
