@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mocapstudio.comparison.normalisation import Poses
 from mocapstudio.comparison.parameters import ComparisonParameters
-from mocapstudio.motion.progress import Progress
+from mocapstudio.motion.progress import Progress, scaled
 from mocapstudio.similarity.alignment.costs import Costs, PoseDistances, ReliableDistances
 from mocapstudio.similarity.alignment.dtw import (
     Alignment,
@@ -63,9 +63,11 @@ def align_poses(
         alignment = yield from _aligning(plain, chosen, band)
         return PoseAlignment(alignment, plain)
     offset = _mean(ours) - _mean(theirs)
-    first = yield from _aligning(costs_of(ours, _moved(theirs, offset)), chosen, band)
+    first = yield from scaled(
+        _aligning(costs_of(ours, _moved(theirs, offset)), chosen, band), 0.0, 0.5
+    )
     costs = costs_of(ours, _moved(theirs, _lasting(ours, theirs, first.path)))
-    second = yield from _aligning(costs, chosen, band)
+    second = yield from scaled(_aligning(costs, chosen, band), 0.5, 1.0)
     return PoseAlignment(Alignment(second.path, plain.pairs(second.path)), costs)
 
 

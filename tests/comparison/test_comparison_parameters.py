@@ -150,3 +150,9 @@ def test_a_part_need_not_last_as_long_as_the_whole() -> None:
     chosen = ComparisonParameters(begin="reference", end="reference")
     assert not any("times as long" in one for one in run(compare(take, part, chosen)).warnings)
     assert any("times as long" in one for one in run(compare(take, part)).warnings)
+
+
+def test_progress_never_goes_back() -> None:
+    done = [step.done for step in compare(dance(6.0), dance(6.0, seed=1))]
+    assert done == sorted(done)
+    assert done[-1] <= 1.0
