@@ -171,6 +171,20 @@ def test_heel_rolls_to_toe_without_a_jump(walk):
     assert speed.max() < before.max() + 0.01
 
 
+def test_contacts_that_take_turns_agree(walk):
+    """Where one point of a foot is let go and another is held, the foot does not jump."""
+    toe = ContactPoint("LeftFoot", "toe", np.array([0.0, -0.05, 0.15]))
+    height = float(place(walk, LEFT)[:, 1].min())
+    turns = (
+        contact(LEFT, 30, 60, Floor(height), "ball"),
+        contact(toe, 60, 90, Floor(height), "toe"),
+    )
+    result = clean(walk, *turns, points=(LEFT, toe))
+    away = place(result.take, LEFT) - place(walk, LEFT)
+    steps = np.linalg.norm(np.diff(away, axis=0), axis=1)
+    assert steps[58:62].max() < 2.0 * steps[45:58].max() + 1e-3
+
+
 def test_a_contact_of_one_frame(walk):
     spot = place(walk, LEFT)[40] + np.array([0.0, 0.02, 0.0])
     result = clean(walk, contact(LEFT, 40, 41, Fixed(tuple(spot))))
