@@ -43,6 +43,7 @@ class MarkersDesk(QObject):
         self._window, self._opening = window, opening
         self._bridge, self._jobs, self._messages = window.bridge, window.jobs, window.messages
         opening.markers_found.connect(lambda markers, _partner: self._open(markers))
+        opening.opened.connect(self._leave)
 
     def ask_solve(self, markers: Sequence[MarkerTake], partner: bool = False) -> None:
         """Ask for a template, and solve markers to its skeleton; or compare them as they are."""
@@ -62,6 +63,11 @@ class MarkersDesk(QObject):
         workspace = self._window.switching.front
         if isinstance(workspace, CompareWorkspace):
             workspace.working.take_in(markers)
+
+    def _leave(self) -> None:
+        """Show takes of joints where they are seen."""
+        if self._window.switching.name == "markers":
+            self._window.switching.show("review")
 
     def show(self) -> None:
         """Bring the Markers workspace to the front."""
@@ -114,7 +120,6 @@ class MarkersDesk(QObject):
             self._opening.imports.note_solved(take, markers.source.path, remarks)
             settings.add_recent("files", markers.source.path)
         self._opening.opened.emit()
-        self._window.switching.show("review")
         tip = "See how well the joints fit the markers"
         link = Link("Import report", tip, self._opening.report_wanted.emit)
         self._messages.tell(f"Solved {markers.name}: {_fit(solved)}.", link)

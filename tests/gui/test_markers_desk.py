@@ -7,6 +7,7 @@ import json
 import numpy as np
 import pytest
 from hands import CTRL, Hands
+from made_takes import walking
 from mouse import click, drag
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtWidgets import QTableView, QToolButton
@@ -316,3 +317,16 @@ def test_commands_wait_for_markers(user, take):
     assert all(actions[name].isEnabled() for name in names)
     workspace.bridge.choose(None)
     assert not actions["markers-exchange"].isEnabled()
+
+
+def test_a_take_of_joints_is_shown_for_review_and_the_markers_stay(user, take, tmp_path):
+    hands = user
+    opened(hands, take)
+    hands.window.bridge.set_ui(learning=False)
+    formats.write(walking(seconds=0.5, rate=30, name="walk"), tmp_path / "walk.bvh")
+    hands.window.files.open_paths([tmp_path / "walk.bvh"])
+    hands.see(lambda: hands.window.bridge.state.active == "walk")
+    assert hands.window.switching.name == "review"
+    hands.key(Qt.Key.Key_4, CTRL)
+    assert hands.shows("markers-table")
+    assert len(hands.window.bridge.state.markers) == 1
