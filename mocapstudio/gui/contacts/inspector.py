@@ -25,7 +25,7 @@ from mocapstudio.gui.contacts.target_fields import TargetFields
 from mocapstudio.gui.contacts.targets import KINDS, converted, kind_of
 from mocapstudio.gui.contacts.troubles import contradicted, unmet_words
 from mocapstudio.gui.widgets.fields import NumberField
-from mocapstudio.gui.widgets.parts import header, label, rule
+from mocapstudio.gui.widgets.parts import header, label, panel, rule
 from mocapstudio.motion.take import Take
 from mocapstudio.review.state import DocumentState
 
@@ -248,16 +248,12 @@ class ContactInspector(QFrame):
         column.addWidget(self._figures)
         column.addWidget(self._trouble)
         column.addStretch(1)
-        row = QHBoxLayout()
-        row.setSpacing(6)
-        for name, text in (
-            ("contacts-split", "Split"),
-            ("contacts-merge", "Merge"),
-            ("contacts-delete", "Delete"),
-        ):
-            row.addWidget(actions.push_button(name, text))
-        column.addLayout(row)
-        return page
+        return _with_foot(
+            page,
+            actions.push_button("contacts-split", "Split"),
+            actions.push_button("contacts-merge", "Merge"),
+            actions.push_button("contacts-delete", "Delete"),
+        )
 
     def _make_span(self) -> QHBoxLayout:
         row = QHBoxLayout()
@@ -314,6 +310,21 @@ class _Figures(QWidget):
         for name, (unit, digits, *values) in lines.items():
             for cell, value in zip(self._cells[name], values, strict=True):
                 cell.setText("–" if value is None else f"{value:.{digits}f} {unit}")  # type: ignore[attr-defined]
+
+
+def _with_foot(page: QWidget, *buttons: QWidget) -> QWidget:
+    """Put buttons under a page where they stay in sight however long it is."""
+    whole, foot = QWidget(), panel("contact-foot")
+    column, row = QVBoxLayout(whole), QHBoxLayout(foot)
+    column.setContentsMargins(0, 0, 0, 0)
+    column.setSpacing(0)
+    row.setContentsMargins(12, 8, 12, 10)
+    row.setSpacing(6)
+    column.addWidget(page, 1)
+    column.addWidget(foot)
+    for one in buttons:
+        row.addWidget(one)
+    return whole
 
 
 def _sentence(words: str) -> str:
