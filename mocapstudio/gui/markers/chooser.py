@@ -5,7 +5,6 @@ from __future__ import annotations
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QComboBox
 
-from mocapstudio.gui import icons
 from mocapstudio.gui.markers.bridge import MarkersBridge
 
 
@@ -38,7 +37,7 @@ class TakeChooser(QComboBox):
             self._listed = ids
             self.clear()
             for one in ids:
-                self.addItem(icons.icon("take"), one, one)
+                self.addItem(one, one)
         self.setVisible(len(ids) > 1)
         row = self.findData(self._bridge.shown.performer)
         if row != self.currentIndex():
