@@ -7,11 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject
-
 from mocapstudio.comparison.weights import read_weights
 from mocapstudio.gui import settings
 from mocapstudio.gui.compare.live_bridge import Phase
+from mocapstudio.gui.compare.part import WorkspacePart
 from mocapstudio.gui.dialogs.files import FileRequest, ask_for_files
 from mocapstudio.gui.workspaces.workspace import Answers
 from mocapstudio.motion.errors import MocapError
@@ -25,20 +24,17 @@ _PLAYABLE = frozenset({Phase.RUNNING, Phase.PAUSED, Phase.ENDED})
 _STEPPING = ("frame-back", "frame-on", "ten-back", "ten-on", "last", "loop")
 
 
-class LiveAnswering(QObject):
+class LiveAnswering(WorkspacePart):
     """Connects the commands with live mode.
 
     Parameters
     ----------
-    window
-        Whose dialogs are asked.
-    workspace
-        The workspace.
+    window, workspace
+        See `WorkspacePart`.
     """
 
     def __init__(self, window: MainWindow, workspace: CompareWorkspace) -> None:
-        super().__init__(workspace)
-        self._window, self._bridge = window, workspace.bridge
+        super().__init__(window, workspace)
         self._live, self._mode = workspace.live, workspace.live_mode
         self._slots: dict[str, Callable[[], object]] = {
             "compare-live": self._mode.switch,
