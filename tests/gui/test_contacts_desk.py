@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import re
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import mouse
 import numpy as np
 import pytest
-from hands import CTRL, Hands
+from hands import CTRL, SHIFT, Hands
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtTest import QTest
 
@@ -16,7 +17,10 @@ from mocapstudio import formats
 from mocapstudio.cleaning.contacts.model import Contact, Fixed, Floor, Following
 from mocapstudio.cleaning.contacts.points import point_positions
 from mocapstudio.cleaning.contacts.slide import measure_slide
+from mocapstudio.cleaning.model import DigressionMap, Flag, Kind, Proposal
+from mocapstudio.cleaning.parameters import DetectionParameters
 from mocapstudio.evaluation.contacts_cases import made_case
+from mocapstudio.gui.viewport.cast import ONION, Part
 from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.take import Take
 from mocapstudio.review.model import Sitting
@@ -36,6 +40,21 @@ def slipping(tmp_path_factory) -> Path:
     path = tmp_path_factory.mktemp("slipping") / "walk.bvh"
     formats.write(part, path)
     return path
+
+
+@dataclass(frozen=True, eq=False)
+class Flagged:
+    """As much of an analysis as the document asks for."""
+
+    take: Take
+    map: DigressionMap
+    flags: tuple[Flag, ...]
+    context: tuple[Take, ...] = ()
+    parameters: DetectionParameters = field(default_factory=DetectionParameters)
+    unanalysed: tuple[str, ...] = ()
+
+    def with_threshold(self, threshold: float) -> Flagged:
+        return replace(self, parameters=replace(self.parameters, threshold=threshold))
 
 
 class Contacts:
@@ -392,8 +411,6 @@ def test_joined_hands_stay_together_after_a_repair(hands: Hands, salsa, tmp_path
         take.skeleton.parents[take.skeleton.index["lHand"]]]]]  # fmt: skip
     span = slice(held.start, held.end)
     turn = rot.from_rotation_vector(np.deg2rad([0.0, 18.0, 0.0]))
-    from mocapstudio.cleaning.model import Proposal
-
     repair = Proposal(
         (take.skeleton.names[arm],), held.start, held.end,
         rot.multiply(take.rotations[span, [arm]], turn), None, "neighbours",
@@ -419,3 +436,95 @@ def test_joined_hands_stay_together_after_a_repair(hands: Hands, salsa, tmp_path
     user.click_contact(held)
     assert "61_10" in hands.text("contact-trouble")
     QTest.qWait(50)
+
+
+def test_onion_skins_show_the_chosen_limb_before_and_after(hands: Hands, slipping: Path) -> None:
+    user = Contacts(hands, slipping)
+    user.drag_lane(user.lane("Left ball", 20), user.lane("Left ball", 59))
+    user.document.set_frame(60)
+    plain = hands.window.bridge.ui
+    hands.press("G", SHIFT)
+    roles = [one for one in user.space.stage.director.roles if one.part in ONION]
+    # Three on each side, a tenth of a second apart: at 60 frames a second every sixth.
+    assert sorted(one.frame(60) for one in roles) == [42, 48, 54, 66, 72, 78]
+    assert [one.frame(3) for one in roles if one.part is Part.BEFORE] == [None, None, None]
+    assert hands.window.actions_["onion"].isChecked()
+    hands.press("G", SHIFT)
+    assert hands.window.bridge.ui == plain
+    assert not [one for one in user.space.stage.director.roles if one.part in ONION]
+
+
+def test_contacts_that_cannot_be_met_say_so(hands: Hands, slipping: Path) -> None:
+    user = Contacts(hands, slipping)
+
+    def draw(start: int, end: int, place: tuple[float, float, float]) -> str:
+        made = Contact("", "LeftToe", "ball", start, end, Fixed(place))
+        return user.document.add_contact(made)
+
+    # One frame, far out of reach.
+    one = draw(60, 61, (3.0, 2.0, 0.9))
+    user.space.bridge.choose(one)
+    user.solve()
+    assert re.fullmatch(
+        r"Out of reach by \d+ mm in 1 frame: the nearest pose was taken\.",
+        hands.text("contact-trouble"),
+    )
+    # Two at once that ask for different places.
+    user.document.delete_contacts([one])
+    one = draw(50, 90, (0.1, 0.0, 0.8))
+    draw(70, 100, (0.1, 0.3, 1.3))
+    user.space.bridge.choose(one)
+    assert "asks for another place in 20 frames" in hands.text("contact-trouble")
+
+
+def test_contacts_are_met_around_an_accepted_repair_only(hands: Hands, slipping: Path) -> None:
+    user = Contacts(hands, slipping)
+    assert not hands.window.actions_["contacts-around"].isEnabled()
+    take = user.state.take
+    thigh = take.skeleton.index["RightUpLeg"]
+    flag = Flag("f", "RightUpLeg", ("RightUpLeg",), 60, 66, 0.9, 62, 0.9, Kind.POP)
+    turn = rot.from_rotation_vector(np.deg2rad([6.0, 0.0, 0.0]))
+    repair = Proposal(
+        ("RightUpLeg",), 60, 66, rot.multiply(take.rotations[60:66, [thigh]], turn), None, "swap"
+    )
+    performer = user.state.active
+    grid = np.zeros((take.frames, 1), np.float32)
+    analysis = Flagged(take, DigressionMap(("RightUpLeg",), grid, grid), (flag,))
+    user.document.finish_analysis(performer, user.document.begin_analysis(performer), analysis)
+    user.document.set_proposal("f", None, repair)
+    user.document.accept("f")
+    hands.see(lambda: np.array_equal(user.space.readings.now.before.rotations,
+                                     user.result.rotations))  # fmt: skip
+    repaired = user.result
+    # Nothing is detected yet: that comes first.
+    hands.key(Qt.Key.Key_Return, CTRL | SHIFT)
+    hands.see(user.solved, 90)
+    changed = np.flatnonzero((user.result.rotations != repaired.rotations).any(axis=(1, 2)))
+    room = round(0.3 * 60)
+    # As much again eases in and out.
+    assert changed.min() >= 60 - 2 * room
+    assert changed.max() < 66 + 2 * room
+    held = [c for c in user.contacts("Right") if c.start < 66 and c.end > 60]
+    assert held
+    reading = user.space.readings.now
+    for contact in held:
+        inside = np.arange(max(60, contact.start), min(66, contact.end)) - contact.start
+        place = reading.place(contact, after=True)[inside]
+        assert np.linalg.norm(np.diff(place, axis=0), axis=1).max() < 1e-3
+
+
+def test_a_key_lets_proposals_keep_hands_and_feet(hands: Hands, slipping: Path) -> None:
+    user = Contacts(hands, slipping)
+    hands.press("H")
+    assert not user.state.keep_ends
+    hands.press("1", CTRL)
+    action = hands.window.actions_["keep-ends"]
+    hands.press("H")
+    assert user.state.keep_ends
+    assert action.isChecked()
+    # It is no step of the sitting.
+    assert user.state.can_undo is None
+    assert not user.state.dirty
+    hands.press("H")
+    assert not user.state.keep_ends
+    assert not action.isChecked()
