@@ -181,9 +181,7 @@ class Working(QObject):
             ranges=reading.ranges,
             kept=kept,
         )
-        job = self._jobs.start(
-            "Meeting the contact", work, met, failed, key=MEET, awaited=True
-        )
+        job = self._jobs.start("Meeting the contact", work, met, failed, key=MEET, awaited=True)
         job.ended.connect(lambda: move_only() if job.cancelled else None)
 
     def draw(self, key: Key, start: int, end: int) -> None:
