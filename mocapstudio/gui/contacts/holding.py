@@ -13,11 +13,12 @@ from mocapstudio.gui.contacts.bending import Bending
 from mocapstudio.gui.contacts.bridge import ContactsBridge
 from mocapstudio.gui.contacts.posing import short_by
 from mocapstudio.gui.contacts.reading import Reading, Readings
-from mocapstudio.gui.contacts.targets import joints_at, moved, place_at, triple
+from mocapstudio.gui.contacts.targets import moved, place_at, triple
 from mocapstudio.gui.viewport.camera import Turntable
 from mocapstudio.gui.viewport.picking import joint_at
 from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.kinematics import take_pose
+from mocapstudio.motion.take import Take
 
 Array = NDArray[np.float64]
 
@@ -51,6 +52,8 @@ class Holding:
         self._bridge, self._readings, self._bending = bridge, readings, bending
         self._camera, self._size = camera, size
         self._contact: Contact | None = None
+        # Where a partner is at the frame that is dragged.
+        self._known: dict[str, tuple[Take, int, list[tuple[str, Array]], Array]] = {}
 
     def taken(self, contact_id: str) -> bool:
         """Take hold of a contact's target; the body follows where the contact is in force."""
@@ -103,15 +106,8 @@ class Holding:
         frame: int,
     ) -> tuple[str, Target | None]:
         if lock is None:
-            for name, other in reading.others.items():
-                spots = [(joint, np.zeros(3)) for joint in other.skeleton.names]
-                places = joints_at(other, frame)
-                world = take_pose(other, frame, frame + 1)[1][0]
-                for palm in reading.palms[name]:
-                    at = other.skeleton.index[palm.joint]
-                    there = places[at] + rot.rotate(world[at], palm.offset)
-                    places = np.concatenate([places, there[None]])
-                    spots.append((palm.joint, palm.offset))
+            for name in reading.others:
+                spots, places = self._spots(reading, name, frame)
                 found = joint_at(self._camera, places, mouse, self._size())
                 if found is not None:
                     joint, offset = spots[found]
@@ -121,6 +117,23 @@ class Holding:
             level = np.array([place[0], floor, place[2]])
             return "the floor", moved(reading, contact, level, frame, upright=lock == 1)
         return "", None
+
+    def _spots(
+        self, reading: Reading, name: str, frame: int
+    ) -> tuple[list[tuple[str, Array]], Array]:
+        """Joints and palms of a partner with their offsets, and (N, 3) where they are."""
+        other = reading.others[name]
+        known = self._known.get(name)
+        if known is None or known[0] is not other or known[1] != frame:
+            spots = [(joint, np.zeros(3)) for joint in other.skeleton.names]
+            positions, world = (one[0] for one in take_pose(other, frame, frame + 1))
+            places = [positions]
+            for palm in reading.palms[name]:
+                at = other.skeleton.index[palm.joint]
+                places.append((positions[at] + rot.rotate(world[at], palm.offset))[None])
+                spots.append((palm.joint, palm.offset))
+            known = self._known[name] = other, frame, spots, np.concatenate(places)
+        return known[2:]
 
     def _floor(self, contact: Contact) -> float | None:
         """Metres: the floor of the contacts of this point, or else of all."""

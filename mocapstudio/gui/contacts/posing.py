@@ -16,6 +16,9 @@ Array = NDArray[np.float64]
 FALLOFF = 0.3
 """Seconds before and after the frame over which a key pose fades out."""
 
+_COARSE = 5
+"""Millimetres: while something is dragged, words need not change with every one of them."""
+
 
 class Posing:
     """One drag of a hand or foot, from press to release; the feet that are not dragged stay.
@@ -74,7 +77,9 @@ class Posing:
 
 def short_by(gap: float) -> str:
     """Say how far a dragged point stays short of the mouse, metres; nothing within reach."""
-    return f"out of reach by {1000 * gap:.0f} mm" if gap > 1e-3 else ""
+    return (
+        f"out of reach by {_COARSE * max(1, round(1000 * gap / _COARSE))} mm" if gap > 1e-3 else ""
+    )
 
 
 def _foot(point: ContactPoint) -> bool:

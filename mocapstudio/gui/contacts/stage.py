@@ -48,6 +48,7 @@ class ContactsStage(Viewport):
 
     def __init__(self, bridge: ContactsBridge, readings: Readings) -> None:
         self._contacts, self._readings = bridge, readings
+        self._said = ""
         self.overlay: Overlay | None = None
         self.dragging: Dragging | None = None
         super().__init__(bridge.desk)
@@ -72,6 +73,7 @@ class ContactsStage(Viewport):
 
     def taken(self, name: str) -> bool:
         """Take hold of a target, or of a hand or foot."""
+        self._said = ""
         if self._contacts.ui.posing:
             return self.posing.taken(name)
         self._contacts.choose(name)
@@ -83,7 +85,11 @@ class ContactsStage(Viewport):
             words = self.posing.dragged(place)
         else:
             words = self.holding.dragged(place, lock, (mouse.x(), mouse.y()))
-        if self._canvas is not None and words:
+        # A window of its own costs as much as the frame: it is moved only when it says more.
+        if words == self._said or self._canvas is None:
+            return
+        self._said = words
+        if words:
             QToolTip.showText(self._canvas.mapToGlobal(mouse.toPoint()), words, self._canvas)
         else:
             QToolTip.hideText()

@@ -152,8 +152,10 @@ class ContactsWorkspace(Workspace):
             self.share_out()
         self._lanes = len(self.lanes.lanes)
 
-    def _follow_ui(self, _old: ContactsUi, _new: ContactsUi) -> None:
-        self._tell(anyway=True)
+    def _follow_ui(self, old: ContactsUi, new: ContactsUi) -> None:
+        # Nothing that can be done depends on where something is dragged to.
+        if old.held is None or new.held is None:
+            self._tell(anyway=True)
 
     def _tell(self, anyway: bool) -> None:
         # Where the play head is decides whether a contact can be split.
