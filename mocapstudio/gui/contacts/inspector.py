@@ -144,9 +144,10 @@ class ContactInspector(QFrame):
         points = () if reading is None else reading.points
         lanes = lanes_of(take.skeleton, points, [contact])
         self._name.setText(next(one.name for one in lanes if one.key == key_of(contact)))
-        sure = "drawn by hand; detecting leaves it alone"
-        if not contact.drawn:
-            sure = f"detected, confidence {contact.confidence:.2f}"
+        sure = f"detected, confidence {contact.confidence:.2f}"
+        if contact.drawn:
+            sure = "drawn by hand"
+        self._how.setToolTip("Detecting again leaves it alone" if contact.drawn else "")
         count = len(self._bridge.ui.chosen)
         more = f" · {count} chosen" if count > 1 else ""
         self._how.setText(f"{contact.joint} · {sure}{more}")
@@ -233,6 +234,7 @@ class ContactInspector(QFrame):
         page, column = _page()
         column.addWidget(self._name)
         column.addWidget(self._how)
+        column.addWidget(self._trouble)
         column.addLayout(self._make_span())
         column.addWidget(rule())
         column.addWidget(label("TARGET", "section"))
@@ -246,7 +248,6 @@ class ContactInspector(QFrame):
         column.addWidget(rule())
         column.addWidget(label("MEASURED", "section"))
         column.addWidget(self._figures)
-        column.addWidget(self._trouble)
         column.addStretch(1)
         return _with_foot(
             page,
