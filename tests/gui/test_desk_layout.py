@@ -5,9 +5,11 @@ from __future__ import annotations
 import pytest
 from hands import CTRL, Hands
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QLabel, QPushButton, QSplitter
+from PySide6.QtOpenGLWidgets import QOpenGLWidget
+from PySide6.QtWidgets import QLabel, QPushButton, QSplitter, QWidget
 
 from mocapstudio.gui import theme
+from mocapstudio.gui.workspaces.registry import WORKSPACES
 
 
 def open_take(hands: Hands, path) -> None:
@@ -50,6 +52,20 @@ def test_nothing_is_cut_off(open_desk, qtbot, generated, size, name):
     hands.see(lambda: cut_texts(hands.window) == [])
     if name == "light":
         hands.menu("View", "Light Theme")
+
+
+def test_native_windows_hold_plots_alone_in_every_workspace(hands, generated):
+    open_take(hands, generated.take)
+    for one in WORKSPACES:
+        hands.window.switching.show(one.name)
+        page = hands.window.switching.front
+        hands.see(page.isVisible)
+        native = [widget for widget in page.findChildren(QWidget) if widget.internalWinId()]
+        assert native or one.name in ("compare", "markers")  # which are empty here
+        assert not page.internalWinId()
+        for widget in native:
+            assert not isinstance(widget, QSplitter)
+            assert not widget.findChildren(QOpenGLWidget)
 
 
 def test_the_viewport_shows_a_skeleton_in_the_window(hands, generated):

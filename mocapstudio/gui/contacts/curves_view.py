@@ -22,6 +22,7 @@ from mocapstudio.gui.plots.curve_panels import PANEL_WIDTH, VALUE_AXIS_WIDTH
 from mocapstudio.gui.plots.layers import Layer
 from mocapstudio.gui.plots.time_plot import RIGHT_GUTTER, TimePlot
 from mocapstudio.gui.plots.time_range import TimeRange
+from mocapstudio.gui.widgets.native import NativeView
 from mocapstudio.review.state import DocumentState
 
 _PAUSE, _DRAGGED = 30, 100
@@ -34,7 +35,7 @@ _WORDS = {
 }
 
 
-class CurvesView(QWidget):
+class CurvesView(NativeView):
     """Two plots under the lanes: slide and gap, before in grey and after in colour.
 
     They follow the chosen contact's lane, or all lanes while none is chosen, and what is being
@@ -53,9 +54,6 @@ class CurvesView(QWidget):
     def __init__(self, bridge: ContactsBridge, readings: Readings, time_range: TimeRange) -> None:
         super().__init__()
         self.setObjectName("contacts-curves")
-        self.setAttribute(Qt.WidgetAttribute.WA_DontCreateNativeAncestors)
-        self.setAttribute(Qt.WidgetAttribute.WA_NativeWindow)
-        self.setAttribute(Qt.WidgetAttribute.WA_StyledBackground)
         self.setProperty("role", "panel")
         self._bridge, self._readings = bridge, readings
         self.before: Measured | None = None

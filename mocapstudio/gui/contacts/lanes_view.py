@@ -20,6 +20,7 @@ from mocapstudio.gui.contacts.troubles import contradicted, unmet_words
 from mocapstudio.gui.plots.axes import TIME_AXIS_HEIGHT, small_font
 from mocapstudio.gui.plots.time_plot import LEFT_GUTTER, RIGHT_GUTTER
 from mocapstudio.gui.plots.time_range import TimeRange
+from mocapstudio.gui.widgets.native import NativeView
 from mocapstudio.gui.widgets.parts import Hint
 from mocapstudio.review.state import DocumentState
 
@@ -35,7 +36,7 @@ _NO_LANES = (
 )
 
 
-class LanesView(QWidget):
+class LanesView(NativeView):
     """A lane for each heel, ball, toe and palm, with its contacts.
 
     Parameters
@@ -55,9 +56,6 @@ class LanesView(QWidget):
         super().__init__()
         self.setObjectName("contacts-lanes")
         # A native window of its own spares the desk from compositing itself at every play head.
-        self.setAttribute(Qt.WidgetAttribute.WA_DontCreateNativeAncestors)
-        self.setAttribute(Qt.WidgetAttribute.WA_NativeWindow)
-        self.setAttribute(Qt.WidgetAttribute.WA_StyledBackground)
         self.setProperty("role", "panel")
         self._bridge, self._readings = bridge, readings
         self.time_range = time_range

@@ -17,13 +17,14 @@ from mocapstudio.gui.plots.layers import Layer
 from mocapstudio.gui.plots.quantities import Curves
 from mocapstudio.gui.plots.time_plot import TimePlot
 from mocapstudio.gui.plots.time_range import TimeRange
+from mocapstudio.gui.widgets.native import NativeView
 from mocapstudio.motion.markers import MarkerTake
 
 _LEAST = 0.02
 _AXES = ("x", "y", "z")
 
 
-class CurvesView(QWidget):
+class CurvesView(NativeView):
     """Curves of one marker; gaps and filled spans are shaded, a drag chooses a span.
 
     Parameters
@@ -37,9 +38,6 @@ class CurvesView(QWidget):
     def __init__(self, bridge: MarkersBridge, time_range: TimeRange) -> None:
         super().__init__()
         self.setObjectName("markers-curves")
-        self.setAttribute(Qt.WidgetAttribute.WA_DontCreateNativeAncestors)
-        self.setAttribute(Qt.WidgetAttribute.WA_NativeWindow)
-        self.setAttribute(Qt.WidgetAttribute.WA_StyledBackground)
         self.setProperty("role", "panel")
         self._bridge, self._time_range = bridge, time_range
         self.axis = ValueAxis(VALUE_AXIS_WIDTH)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtCore import QPointF, QRectF
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QToolTip, QWidget
 
@@ -16,11 +16,12 @@ from mocapstudio.gui.plots.row_labels import RowLabels
 from mocapstudio.gui.plots.rows import RowLayout
 from mocapstudio.gui.plots.time_plot import RIGHT_GUTTER
 from mocapstudio.gui.plots.time_range import TimeRange
+from mocapstudio.gui.widgets.native import NativeView
 
 _WORDS = {Cell.MISSING: "missing", Cell.FILLED: "filled", Cell.MEASURED: "measured"}
 
 
-class LanesView(QWidget):
+class LanesView(NativeView):
     """Shows when which marker is missing or filled.
 
     A click chooses a marker, goes to the frame and chooses the gap there; Shift and drag chooses
@@ -37,9 +38,6 @@ class LanesView(QWidget):
     def __init__(self, bridge: MarkersBridge, time_range: TimeRange) -> None:
         super().__init__()
         self.setObjectName("markers-lanes")
-        self.setAttribute(Qt.WidgetAttribute.WA_DontCreateNativeAncestors)
-        self.setAttribute(Qt.WidgetAttribute.WA_NativeWindow)
-        self.setAttribute(Qt.WidgetAttribute.WA_StyledBackground)
         self.setProperty("role", "panel")
         self._bridge = bridge
         self.plot = LanePlot(time_range)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtGui import QMoveEvent
-from PySide6.QtWidgets import QWidget
+from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 
 class NativeView(QWidget):
@@ -32,3 +32,16 @@ class NativeView(QWidget):
         parent = self.parentWidget()
         if parent is not None:
             self.setGeometry(parent.rect())
+
+
+def alone(view: NativeView) -> QWidget:
+    """Put a view into a plain widget of its own.
+
+    What lies beside a native window becomes native as well, and what a viewport in it paints is
+    sometimes lost when pages are switched.
+    """
+    place = QWidget()
+    whole = QVBoxLayout(place)
+    whole.setContentsMargins(0, 0, 0, 0)
+    whole.addWidget(view)
+    return place

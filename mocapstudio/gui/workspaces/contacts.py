@@ -22,6 +22,7 @@ from mocapstudio.gui.contacts.working import Working
 from mocapstudio.gui.document import only_frame_differs
 from mocapstudio.gui.plots.time_range import TimeRange
 from mocapstudio.gui.views.transport import TransportView
+from mocapstudio.gui.widgets.native import alone
 from mocapstudio.gui.workspaces.workspace import Answers, Workspace
 from mocapstudio.review.state import DocumentState
 
@@ -132,7 +133,7 @@ class ContactsWorkspace(Workspace):
             splitter.setChildrenCollapsible(False)
         self._columns.addWidget(centre)
         self._columns.addWidget(self.inspector)
-        for row in (self._columns, self.lanes, self.curves):
+        for row in (self._columns, alone(self.lanes), alone(self.curves)):
             self._rows.addWidget(row)
         for index, stretch in enumerate((1, 0)):
             self._columns.setStretchFactor(index, stretch)

@@ -23,6 +23,7 @@ from mocapstudio.gui.markers.stage import MarkersStage
 from mocapstudio.gui.markers.transport import MarkersTransport
 from mocapstudio.gui.markers.working import Working
 from mocapstudio.gui.plots.time_range import TimeRange
+from mocapstudio.gui.widgets.native import alone
 from mocapstudio.gui.workspaces.workspace import Answers, Workspace
 
 if TYPE_CHECKING:
@@ -135,7 +136,7 @@ class MarkersWorkspace(Workspace):
         for index, part in enumerate((self.table, centre, self.inspector)):
             self._columns.addWidget(part)
             self._columns.setStretchFactor(index, int(index == 1))
-        for index, row in enumerate((self._columns, self.lanes, self.curves)):
+        for index, row in enumerate((self._columns, alone(self.lanes), alone(self.curves))):
             self._rows.addWidget(row)
             self._rows.setStretchFactor(index, int(index == 0))
         self._stack.addWidget(self._empty)
