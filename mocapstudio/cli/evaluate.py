@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from mocapstudio.cli.output import JsonPath, check_writable, write_json
-from mocapstudio.motion.errors import MocapError
+from mocapstudio.motion.errors import FileError, MocapError
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Sequence
@@ -62,16 +62,18 @@ def evaluate(
     labels: Annotated[
         list[Path] | None,
         typer.Option(
-            "--labels", metavar="FILE", help="Of alignment: segments of takes (JSON); repeatable."
+            "--labels",
+            metavar="PATH",
+            help="Of alignment: segments of takes, a JSON file or a folder of them; repeatable.",
         ),
     ] = None,
     events: Annotated[
         list[Path] | None,
         typer.Option(
             "--events",
-            metavar="FILE",
-            help="Of alignment: segments (JSON) of the same movement by different performers, of"
-            " which every two are compared; repeatable.",
+            metavar="PATH",
+            help="Of alignment: segments of the same movement by different performers, of which"
+            " every two are compared, a JSON file or a folder of them; repeatable.",
         ),
     ] = None,
     context: Annotated[
@@ -96,7 +98,16 @@ def evaluate(
     check_writable(json_path)
     check_writable(html_path)
     asked = _Asked(
-        what, data, truth, cleaned, labels or [], events or [], _sizes(context), seed, limit, brief
+        what,
+        data,
+        truth,
+        cleaned,
+        label_files(labels or []),
+        label_files(events or []),
+        _sizes(context),
+        seed,
+        limit,
+        brief,
     )
     asked.check()
     report = run(asked.work(), f"evaluate {what.value}")
@@ -165,6 +176,17 @@ class _Asked:
         if self.what is What.REPAIR:
             return reports.repair(self.data, self.sizes[-1], self.seed, self.limit)
         return reports.speed(self.data, self.seed, long=not self.brief)
+
+
+def label_files(paths: Sequence[Path]) -> list[Path]:
+    """Take the JSON files of folders in place of the folders."""
+    found: list[Path] = []
+    for path in paths:
+        inside = sorted(path.glob("*.json")) if path.is_dir() else [path]
+        if not inside:
+            raise FileError(path, "holds no labels (JSON)")
+        found += inside
+    return found
 
 
 def _sizes(context: list[Size] | None) -> Sequence[ContextSize]:

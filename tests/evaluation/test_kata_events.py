@@ -12,10 +12,11 @@ from made_takes import paced, walking
 
 from mocapstudio import formats
 from mocapstudio.cli.app import run as command
+from mocapstudio.cli.evaluate import label_files
 from mocapstudio.comparison.labels import Labels, write_labels
 from mocapstudio.comparison.model import Segment
 from mocapstudio.evaluation.kata_events import METHODS, PLAIN, event_table, found_events
-from mocapstudio.motion.errors import SkeletonMismatchError
+from mocapstudio.motion.errors import FileError, SkeletonMismatchError
 from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.motion.progress import run
 
@@ -80,3 +81,12 @@ def test_events_are_for_alignment_alone(folder: Path, capsys: pytest.CaptureFixt
     assert said.startswith("error: ")
     assert "--events" in said
     assert said.count("\n") == 1
+
+
+def test_a_folder_of_labels_stands_for_its_files(folder: Path, tmp_path: Path) -> None:
+    write_labels(Labels("one", Fraction(30), (Segment("a", 0, 40),)), tmp_path / "b.json")
+    (tmp_path / "README.md").write_text("not labels")
+    assert label_files([tmp_path, folder / "x.json"]) == [tmp_path / "b.json", folder / "x.json"]
+    (tmp_path / "none").mkdir()
+    with pytest.raises(FileError, match="holds no labels"):
+        label_files([tmp_path / "none"])
