@@ -19,6 +19,8 @@ _KINDS = {
 }
 _KIND_OF = {word: kind for kind, words in _KINDS.items() for word in words.split()}
 _SEPARATORS = " ._:-/|"
+_BEFORE_AXIS = re.compile(rf"(\s+[-|/:]\s+|:\s+|\s+|[{re.escape(_SEPARATORS)}])$")
+"""One separator: a label may end with another."""
 _WORD = re.compile(rf"(?:^|[{re.escape(_SEPARATORS)}])([A-Za-z]+)$")
 _CAMEL = re.compile(r"(?<=[a-z0-9])(Position|Pos|Rotation|Rot|Translation|Acceleration|Acc)$")
 _UNIT = re.compile(r"\s*[\[(]([^\])]*)[\])]\s*$")
@@ -101,7 +103,7 @@ def read_name(text: str) -> Name | None:
     text = text[: found.start()].rstrip() if found else text.rstrip()
     if not text or text[-1].lower() not in "xyzw":
         return None
-    stem = text[:-1].rstrip(_SEPARATORS)
+    stem = _BEFORE_AXIS.sub("", text[:-1])
     separated = len(stem) < len(text) - 1
     base, kind = stem, POSITION
     word = _WORD.search(stem)
@@ -112,7 +114,7 @@ def read_name(text: str) -> Name | None:
     camel = _CAMEL.search(stem)
     if base == stem and camel:
         base, kind = stem[: camel.start()], _KIND_OF[camel.group(1).lower()]
-    return Name(base.strip(_SEPARATORS), kind, text[-1].lower(), unit)
+    return Name(base.lstrip(_SEPARATORS).rstrip(), kind, text[-1].lower(), unit)
 
 
 def triples(names: Sequence[Name | None]) -> list[Triple]:

@@ -76,6 +76,16 @@ def test_conventions_of_names(tmp_path: Path, convention: str, lower: bool) -> N
         np.testing.assert_allclose(take.positions, PLACES / 1000, atol=0.51e-6)
 
 
+@pytest.mark.parametrize("label", ["L.Post.Fem.", "foot_", "a b-"])
+@pytest.mark.parametrize("separator", [".", " ", "_", ": ", " - "])
+def test_labels_may_end_like_a_separator(tmp_path: Path, label: str, separator: str) -> None:
+    names = [f"{one}{separator}{axis}" for one in (label, *LABELS[1:]) for axis in AXES]
+    path = tmp_path / "take.csv"
+    path.write_text(table(names, ","))
+    [take], _ = formats.read_any(path)
+    assert take.labels == (label, *LABELS[1:])
+
+
 def test_other_quantities_are_left_alone(tmp_path: Path) -> None:
     names = [f"{label}.{kind}{axis}" for label in LABELS for kind in "DRa" for axis in "xyz"]
     rows = np.random.default_rng(0).normal(size=(10, 3, 9))
