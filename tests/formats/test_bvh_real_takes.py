@@ -142,9 +142,15 @@ def test_cmu_t_poses_are_trimmed_and_told(data: Path, takes: Takes) -> None:
     for name in ("05_13", "02_01"):
         with_t_pose[data / "cmu_same_take_3_formats" / f"{name}.bvh"] = 1
     for path, (take, report) in takes.items():
-        expected = (with_t_pose[path], take.frames) if path in with_t_pose else None
-        assert take.trim == expected, path
-        assert any("T-pose" in p.what for p in report.problems) == (expected is not None), path
+        told = any("T-pose" in p.what for p in report.problems)
+        assert told == (take.trim is not None), path
+        if path.parent.name == "cmu_salsa_pairs_bvh":
+            # A filter has spread their jump out of the T-pose, and rings for some rows after it.
+            assert take.trim is not None and 4 < take.trim[0] < 20, path
+            assert take.trim[1] == take.frames, path
+        else:
+            expected = (with_t_pose[path], take.frames) if path in with_t_pose else None
+            assert take.trim == expected, path
 
 
 def test_the_same_take_as_amc_has_its_root_at_the_same_place(data: Path) -> None:
