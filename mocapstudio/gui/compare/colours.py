@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
 from PySide6.QtGui import QColor
 
 from mocapstudio.gui.theme import Theme
@@ -28,12 +26,6 @@ TIMING_WORDS = {-1: "delayed", 0: "on time", 1: "hastened"}
 def timing(theme: Theme, kind: int) -> QColor:
     """Colour of a frame that gains (1, hastened), loses (-1, delayed) or does neither (0)."""
     return QColor(_TIMING[theme.name][int(kind)])
-
-
-def timing_rgb(theme: Theme) -> NDArray[np.uint8]:
-    """(3, 3) the same as bytes; indexed by -1, 0, 1 as ``[kind]`` with -1 last."""
-    colours = [timing(theme, kind) for kind in (0, 1, -1)]
-    return np.array([(c.red(), c.green(), c.blue()) for c in colours], dtype=np.uint8)
 
 
 def source(theme: Theme, number: int) -> str:

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapstudio.gui.compare import placing
-from mocapstudio.gui.compare.actors import JointActor
 from mocapstudio.gui.compare.placing import Placing
+from mocapstudio.gui.stage.actors import JointActor
 from mocapstudio.gui.viewport.figure import Figure
 from mocapstudio.gui.viewport.solids import Detail, Floats
 from mocapstudio.gui.viewport.world import Points

@@ -12,20 +12,20 @@ from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QToolTip, QWidget
 
 from mocapstudio.gui import theme
 from mocapstudio.gui.compare import colours as kinds
-from mocapstudio.gui.compare.actors import JointActor
 from mocapstudio.gui.compare.bridge import Alignment, CompareBridge, CompareUi
 from mocapstudio.gui.compare.guest import Guest
 from mocapstudio.gui.compare.naming import short_names
-from mocapstudio.gui.compare.scene import Pose, as_colour
-from mocapstudio.gui.compare.skeleton_view import SkeletonView
 from mocapstudio.gui.compare.troupe import Member, Part, Troupe, figures
 from mocapstudio.gui.compare.weight_bars import Weighting
 from mocapstudio.gui.compare.weight_rows import WeightRow
 from mocapstudio.gui.compare.weights_view import weight_colours
+from mocapstudio.gui.stage.actors import JointActor
+from mocapstudio.gui.stage.scene import Pose
+from mocapstudio.gui.stage.skeleton_view import SkeletonView
 from mocapstudio.gui.viewport import picking
 from mocapstudio.gui.viewport.camera import Turntable
 from mocapstudio.gui.viewport.overlay import Bar
-from mocapstudio.gui.viewport.palette import Colour, palette
+from mocapstudio.gui.viewport.palette import Colour, palette, rgb
 from mocapstudio.motion.take import Take
 from mocapstudio.review.comparing import ComparingState
 from mocapstudio.review.comparing_state import only_view_differs
@@ -286,7 +286,7 @@ class StageView(QWidget):
         placed = self._troupe.place(member, state, ui)
         hot: Colour | None = None
         if ui.differences and member.part is Part.SOURCE:
-            hot = as_colour(kinds.far(theme.current()).name())
+            hot = rgb(kinds.far(theme.current()).name())
         ring = None
         if state.row is not None and member.part is not Part.OTHER:
             ring = self._troupe.point_of(member, state.row)
@@ -323,7 +323,7 @@ class StageView(QWidget):
     def _colour(self, member: Member) -> Colour:
         if member.part is Part.REFERENCE:
             return self._palette.body
-        return as_colour(kinds.source(theme.current(), member.number))
+        return rgb(kinds.source(theme.current(), member.number))
 
     def stir(self) -> None:
         """Say that the picture is another."""
@@ -392,4 +392,4 @@ class StageView(QWidget):
 
 def _weight_colours() -> tuple[Colour, Colour]:
     lower, upper = weight_colours()
-    return as_colour(lower.name()), as_colour(upper.name())
+    return rgb(lower.name()), rgb(upper.name())

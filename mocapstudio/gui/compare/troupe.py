@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from mocapstudio.comparison.model import Comparison
 from mocapstudio.gui.compare import placing
-from mocapstudio.gui.compare.actors import Actor, actor_of
 from mocapstudio.gui.compare.bridge import Alignment, CompareUi
 from mocapstudio.gui.compare.guest import Guest
 from mocapstudio.gui.compare.placing import Placing
+from mocapstudio.gui.stage.actors import Actor, actor_of
 from mocapstudio.gui.viewport.figure import Figure
 from mocapstudio.gui.viewport.palette import Colour
 from mocapstudio.gui.viewport.solids import COARSE, FINE, Detail

@@ -3,40 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapstudio.gui.compare.actors import Actor
 from mocapstudio.gui.compare.weight_rows import WeightRow
+from mocapstudio.gui.stage.actors import Actor
+from mocapstudio.gui.stage.scene import Bars
 from mocapstudio.gui.viewport.palette import Colour
 from mocapstudio.gui.viewport.world import Points
 
 _HEIGHT = 0.11
 _WIDTH = 0.016
-
-
-@dataclass(frozen=True, eq=False)
-class Bars:
-    """Upright bars of two parts that face the camera.
-
-    Parameters
-    ----------
-    feet
-        (N, 3) metres.
-    parts
-        (N, 2) metres: heights of the lower and the upper part.
-    width
-        Metres.
-    colours
-        Of lower and upper parts.
-    """
-
-    feet: Points
-    parts: NDArray[np.float64]
-    width: float
-    colours: tuple[Colour, Colour]
 
 
 class Weighting:

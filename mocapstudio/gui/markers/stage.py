@@ -12,11 +12,11 @@ from PySide6.QtGui import QAction, QShowEvent
 from PySide6.QtWidgets import QGridLayout, QToolTip, QWidget
 
 from mocapstudio.gui import theme, wording
-from mocapstudio.gui.compare.actors import MarkerActor
-from mocapstudio.gui.compare.marker_bones import guess_bones
-from mocapstudio.gui.compare.scene import Pose
-from mocapstudio.gui.compare.skeleton_view import SkeletonView
 from mocapstudio.gui.markers.bridge import MarkersBridge, MarkersShown
+from mocapstudio.gui.stage.actors import MarkerActor
+from mocapstudio.gui.stage.marker_bones import guess_bones
+from mocapstudio.gui.stage.scene import Pose
+from mocapstudio.gui.stage.skeleton_view import SkeletonView
 from mocapstudio.gui.viewport import picking
 from mocapstudio.gui.viewport.camera import Turntable
 from mocapstudio.gui.viewport.overlay import Bar

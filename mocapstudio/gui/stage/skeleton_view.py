@@ -1,4 +1,4 @@
-"""One viewport of the comparison: a canvas with its scene, a caption and a legend."""
+"""One viewport of a stage: a canvas with its scene, a caption and a legend."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from PySide6.QtCore import QPointF, Qt, Signal
 from PySide6.QtGui import QCloseEvent, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QGridLayout, QLabel, QWidget
 
-from mocapstudio.gui.compare.scene import CompareScene
+from mocapstudio.gui.stage.scene import StageScene
 from mocapstudio.gui.viewport.camera import Turntable
 from mocapstudio.gui.viewport.canvas import Canvas
 from mocapstudio.gui.viewport.controls import Controls
@@ -43,7 +43,7 @@ class SkeletonView(QWidget):
     def __init__(self, camera: Turntable, prepare: Callable[[SkeletonView], None]) -> None:
         super().__init__()
         self.canvas: Canvas | None = None
-        self.scene: CompareScene | None = None
+        self.scene: StageScene | None = None
         self.caption, self._legend = Caption(self), Legend(self)
         self._spare = 0
         self.setMinimumSize(200, 140)
@@ -52,7 +52,7 @@ class SkeletonView(QWidget):
         problem = opengl_problem()
         if problem is None:
             self.canvas = Canvas(self, lambda: prepare(self))
-            self.scene = CompareScene(self.canvas.renderer)
+            self.scene = StageScene(self.canvas.renderer)
             controls = Controls(self.canvas, camera)
             controls.moved.connect(self.moved)
             controls.clicked.connect(lambda at, _extend: self.clicked.emit(at))

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapstudio.gui.compare.marker_bones import guess_bones
+from mocapstudio.gui.stage.marker_bones import guess_bones
 from mocapstudio.gui.viewport.figure import Figure
 from mocapstudio.gui.viewport.scene3d import floor_level
 from mocapstudio.gui.viewport.shaping import build_figure, stature

@@ -1,4 +1,4 @@
-"""One viewport's scene in VTK: figures side by side or over one another, marks and floor."""
+"""A stage's scene in VTK: figures side by side or over one another, marks and floor."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapstudio.gui.compare.weight_bars import Bars
 from mocapstudio.gui.viewport import floor, marks, scene3d
 from mocapstudio.gui.viewport.bodies import Bodies
 from mocapstudio.gui.viewport.camera import Turntable
@@ -19,6 +18,28 @@ from mocapstudio.gui.viewport.solids import Floats
 from mocapstudio.gui.viewport.world import Points
 
 _BEFORE = 0.07
+
+
+@dataclass(frozen=True, eq=False)
+class Bars:
+    """Upright bars of two parts that face the camera.
+
+    Parameters
+    ----------
+    feet
+        (N, 3) metres.
+    parts
+        (N, 2) metres: heights of the lower and the upper part.
+    width
+        Metres.
+    colours
+        Of lower and upper parts.
+    """
+
+    feet: Points
+    parts: NDArray[np.float64]
+    width: float
+    colours: tuple[Colour, Colour]
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +76,7 @@ class Pose:
     bars: Bars | None = None
 
 
-class CompareScene:
+class StageScene:
     """Everything one viewport draws; three actors, whoever is on stage.
 
     Parameters
@@ -143,9 +164,3 @@ class CompareScene:
         colours = np.where((steps <= 0)[:, None], past, coming)
         width = 0.006 * size * (1 - 0.75 * np.abs(steps))
         self._marks.trail(path, width, camera.position(), colours)
-
-
-def as_colour(name: str) -> Colour:
-    """Return ``#rrggbb`` as three bytes."""
-    value = int(name.lstrip("#"), 16)
-    return value >> 16 & 255, value >> 8 & 255, value & 255
