@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 from mocapstudio.cleaning.contacts.anatomy import leg_length
 from mocapstudio.cleaning.contacts.model import Contact, ContactPoint, Fixed
 from mocapstudio.cleaning.contacts.points import contact_points, point_positions
-from mocapstudio.cleaning.contacts.speeds import runs, smoothed
+from mocapstudio.cleaning.contacts.speeds import smoothed
 from mocapstudio.evaluation.contacts_cases import ContactCase
 from mocapstudio.evaluation.contacts_scoring import Detector, score_contacts
+from mocapstudio.motion.runs import runs
 from mocapstudio.motion.take import Take
 
 Array = NDArray[np.float64]

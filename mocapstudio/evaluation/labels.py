@@ -24,6 +24,7 @@ from mocapstudio.evaluation.truth import (
 )
 from mocapstudio.formats.json_file import read_json
 from mocapstudio.motion.errors import FileError, MocapError
+from mocapstudio.motion.runs import runs
 from mocapstudio.motion.take import Take
 
 
@@ -133,11 +134,7 @@ def events_of(mask: Mask, rows: Sequence[str]) -> list[Truth]:
     """Every run of erroneous frames of a row of `mask` (F, R), as an error of unknown kind."""
     found = []
     for column, row in enumerate(rows):
-        edges = np.diff(np.concatenate([[0], mask[:, column].astype(np.int8), [0]]))
-        starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
-        found += [
-            Truth(Kind.OFFSET, (row,), int(a), int(b)) for a, b in zip(starts, ends, strict=True)
-        ]
+        found += [Truth(Kind.OFFSET, (row,), start, end) for start, end in runs(mask[:, column])]
     return sorted(found, key=lambda truth: truth.start)
 
 

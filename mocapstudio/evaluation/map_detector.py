@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from typing import TypeVar
 
-import numpy as np
-
 from mocapstudio.cleaning.model import Flag, Kind
 from mocapstudio.evaluation.cases import Case
 from mocapstudio.evaluation.detection_benchmark import Detection, Detector, evaluate_detector
 from mocapstudio.evaluation.scoring import THRESHOLDS
 from mocapstudio.evaluation.truth import Array, Mask
+from mocapstudio.motion.runs import runs
 from mocapstudio.motion.take import Take
 
 ValueMap = Callable[[Take, Sequence[Take]], tuple[tuple[str, ...], Array]]
@@ -41,7 +40,7 @@ def flags_above(
     """Spans of rows of a map (F, R) above the threshold, those nearer than 1/8 s taken as one."""
     flags = []
     for column, row in enumerate(rows):
-        for start, end in _runs(values[:, column] > threshold, round(_BRIDGE_SECONDS * rate)):
+        for start, end in _bridged(values[:, column] > threshold, round(_BRIDGE_SECONDS * rate)):
             span = values[start:end, column]
             at, peak = start + int(span.argmax()), float(span.max())
             flags.append(
@@ -50,14 +49,13 @@ def flags_above(
     return tuple(flags)
 
 
-def _runs(above: Mask, bridge: int) -> list[tuple[int, int]]:
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], above, [False]]).astype(np.int8)))
+def _bridged(above: Mask, bridge: int) -> list[tuple[int, int]]:
     spans: list[tuple[int, int]] = []
-    for start, end in zip(edges[::2], edges[1::2], strict=True):
+    for start, end in runs(above):
         if spans and start - spans[-1][1] <= bridge:
-            spans[-1] = (spans[-1][0], int(end))
+            spans[-1] = (spans[-1][0], end)
         else:
-            spans.append((int(start), int(end)))
+            spans.append((start, end))
     return spans
 
 

@@ -12,9 +12,10 @@ from mocapstudio.formats.amc_read import AmcRecord
 from mocapstudio.formats.amc_take import Layout, motion
 from mocapstudio.formats.amc_text import Cells
 from mocapstudio.formats.bvh_read import in_metres, turn_inside
-from mocapstudio.formats.changes import Changes, runs
+from mocapstudio.formats.changes import Changes
 from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.errors import MocapError
+from mocapstudio.motion.runs import runs
 from mocapstudio.motion.take import Source, Take
 
 Array = NDArray[np.float64]

@@ -14,7 +14,7 @@ from mocapstudio.formats.bvh_motion import parse_motion
 from mocapstudio.formats.bvh_read import BvhRecord, in_metres, turn_inside
 from mocapstudio.formats.bvh_rows import MotionBlock
 from mocapstudio.formats.bvh_take import motion
-from mocapstudio.formats.changes import Changes, changes, runs, undeclared
+from mocapstudio.formats.changes import Changes, changes, undeclared
 from mocapstudio.formats.euler import nearest_euler
 from mocapstudio.formats.frame_time import frame_time, stated_rate
 from mocapstudio.formats.reading import Reading
@@ -22,6 +22,7 @@ from mocapstudio.formats.splicing import Splice, spliced
 from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.errors import MocapError
+from mocapstudio.motion.runs import runs
 from mocapstudio.motion.take import Source, Take
 
 Array = NDArray[np.float64]

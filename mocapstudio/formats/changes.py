@@ -111,9 +111,3 @@ def undeclared(take: Take, changed: Changes, declared: Sequence[Declared]) -> st
             many = f" and {len(frames) - 1} more" if len(frames) > 1 else ""
             return f"{what} of {joint} at frame {int(frames[0])}{many}"
     return None
-
-
-def runs(mask: Mask) -> list[tuple[int, int]]:
-    """Half-open spans of the frames at which a mask (F,) is True."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
-    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]

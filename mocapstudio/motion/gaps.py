@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.markers import MarkerTake
+from mocapstudio.motion.runs import runs
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -80,12 +81,6 @@ def gaps(take: MarkerTake, spans: Iterable[Declared] | None = None) -> list[Gap]
             if wanted is None or wanted[start:end, marker].any():
                 found.append(Gap(marker, start, end, take.frames))
     return found
-
-
-def runs(mask: Mask) -> list[tuple[int, int]]:
-    """Half-open runs in which a mask (F,) is true."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
-    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
 
 
 def completed(take: MarkerTake, positions: Array, spans: Iterable[Declared] | None) -> MarkerTake:

@@ -10,8 +10,8 @@ from typing import Any
 from mocapstudio import __version__, formats
 from mocapstudio.formats import WriteOptions
 from mocapstudio.formats.atomic import write_whole
-from mocapstudio.motion.gaps import runs
 from mocapstudio.motion.markers import MarkerTake
+from mocapstudio.motion.runs import runs
 from mocapstudio.review.document import Document
 from mocapstudio.review.export import inputs_of, provenance_path
 from mocapstudio.review.marker_changes import marker_changes

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mocapstudio.motion.gaps import runs
 from mocapstudio.motion.markers import MarkerTake
+from mocapstudio.motion.runs import runs
 
 Span = tuple[int, int]
 

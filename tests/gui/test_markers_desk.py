@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QTableView, QToolButton
 
 from mocapstudio import formats
 from mocapstudio.motion.declared import Declared
-from mocapstudio.motion.gaps import runs
+from mocapstudio.motion.runs import runs
 from mocapstudio.review.document import Document
 
 SHIFT = Qt.KeyboardModifier.ShiftModifier

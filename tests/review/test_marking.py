@@ -14,9 +14,9 @@ from mocapstudio import formats
 from mocapstudio.formats import ReadOptions
 from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.errors import FileError, MocapError
-from mocapstudio.motion.gaps import runs
 from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.motion.progress import run
+from mocapstudio.motion.runs import runs
 from mocapstudio.review import journal, session_file, session_record
 from mocapstudio.review.document import Document
 from mocapstudio.review.marker_export import export_markers

@@ -34,8 +34,8 @@ from mocapstudio.cleaning.decision.spans import candidates, judged, labels_of, s
 from mocapstudio.cleaning.decision.spoiling import Anatomy
 from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.facing import ROOT_ROWS
-from mocapstudio.motion.gaps import runs
 from mocapstudio.motion.progress import Progress, scaled
+from mocapstudio.motion.runs import runs
 from mocapstudio.motion.take import Take
 
 _SUSPECT = 0.3

@@ -108,9 +108,3 @@ def envelope(x: F64, y: F64) -> tuple[F64, F64]:
     starts = np.flatnonzero(np.diff(column, prepend=column[0] - 1))
     low, high = np.minimum.reduceat(y, starts), np.maximum.reduceat(y, starts)
     return np.repeat(x[starts], 2), np.stack([low, high], axis=-1).ravel()
-
-
-def open_runs(barred: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Half-open stretches of values that are not barred."""
-    edges = np.flatnonzero(np.diff(np.r_[True, barred, True].astype(np.int8)))
-    return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]

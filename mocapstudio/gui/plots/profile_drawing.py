@@ -11,8 +11,9 @@ from PySide6.QtGui import QColor, QPainter, QPen, QPolygonF
 
 from mocapstudio.gui.plots import colours
 from mocapstudio.gui.plots.axes import small_font
-from mocapstudio.gui.plots.profile_curve import F64, envelope, open_runs
+from mocapstudio.gui.plots.profile_curve import F64, envelope
 from mocapstudio.gui.theme import Theme
+from mocapstudio.motion.runs import runs
 
 if TYPE_CHECKING:
     from mocapstudio.cleaning.distance_profile import TakeDistances
@@ -34,7 +35,7 @@ def draw_curve(p: QPainter, look: Theme, part: TakeDistances, x: F64, y: F64) ->
     """
     p.setRenderHint(QPainter.RenderHint.Antialiasing)
     _polyline(p, x, y, QPen(QColor(look.faint), 1))
-    for first, last in open_runs(part.barred):
+    for first, last in runs(~part.barred):
         _polyline(p, x[first:last], y[first:last], QPen(QColor(look.neighbour), 1.2))
     p.setRenderHint(QPainter.RenderHint.Antialiasing, False)
 
