@@ -33,7 +33,8 @@ def patched(take: MarkerTake, declared: Sequence[Declared], *, trim: bool) -> It
     A changed sample has no camera, and no residual either unless the take tells it from those that
     were filled: by that the format marks what was not measured. A sample that was taken away is
     marked as invalid. All other bytes are the source's own: points that are no markers, analogue
-    samples, parameters.
+    samples, parameters. Only where something was filled and the source says of no sample that it
+    was measured, the others are marked so, by the least residual.
 
     Parameters
     ----------
@@ -58,7 +59,9 @@ def patched(take: MarkerTake, declared: Sequence[Declared], *, trim: bool) -> It
     data = bytearray(record.data)
     end = layout.start + layout.frames * layout.stride
     rows = np.frombuffer(memoryview(data)[layout.start : end], dtype=np.uint8)
-    _put(take, source, changed, rows.reshape(layout.frames, layout.stride))
+    rows = rows.reshape(layout.frames, layout.stride)
+    _put(take, source, changed, rows)
+    _tell_filled(take, record, changed, rows)
     del rows
     _put_rate(data, record.parameters, take.rate)
     if not (trim and take.trim is not None and take.trim != (0, layout.frames)):
@@ -92,6 +95,34 @@ def _put(
         cells = _cells(xyz, measured, layout, f"{take.name}: marker {take.labels[m]}")
         at = int(record.points[m]) * 4 * layout.width
         rows[frames, at : at + 4 * layout.width] = cells
+
+
+def _tell_filled(
+    take: MarkerTake, record: C3dRecord, changed: NDArray[np.bool_], rows: NDArray[np.uint8]
+) -> None:
+    """Say of other samples that they were measured, where the file does not say so of any."""
+    if take.filled is None or not (added := changed & take.filled).any():
+        return
+    points, layout = read_points(record.data, record.layout), record.layout
+    there = ~points.missing
+    told = (points.measured & there).sum(axis=0) * 2 > there.sum(axis=0)
+    untold = record.points[added.any(axis=0) & ~told[record.points]]
+    if not len(untold):
+        return
+    if not points.measured.any():
+        # Else the others would look like points that were computed.
+        untold = np.arange(layout.points)
+    numbers = layout.numbers
+    least = numbers.floats_bytes(np.ones(1, np.float32)) if layout.real else None
+    word = numbers.words_bytes(np.ones(1, np.int16)) if least is None else least
+    mark = np.frombuffer(word, dtype=np.uint8)
+    own = {int(point): m for m, point in enumerate(record.points)}
+    for point in untold.tolist():
+        measured = there[:, point].copy()
+        if point in own:
+            measured &= ~take.filled[:, own[point]] & ~changed[:, own[point]]
+        at = (4 * point + 3) * layout.width
+        rows[np.flatnonzero(measured), at : at + layout.width] = mark
 
 
 def _cells(

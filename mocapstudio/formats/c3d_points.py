@@ -50,6 +50,19 @@ class Points:
         """(F, P) True where there is no sample."""
         return self.invalid | self.no_number | self.zero
 
+    def filled(self, points: Indices) -> Mask | None:
+        """(F, N) True where samples of some points were computed, or None where none was.
+
+        They have neither camera nor residual, while most samples of that point have, or some of
+        that point and most of all.
+        """
+        there = ~self.missing[:, points]
+        measured = self.measured[:, points] & there
+        own = measured.sum(axis=0)
+        mostly = measured.sum() * 2 > there.sum()
+        found = there & ~measured & ((own * 2 > there.sum(axis=0)) | (mostly & (own > 0)))
+        return found if found.any() else None
+
     def coordinates(self, frames: slice | Indices, points: Indices) -> NDArray[np.float32]:
         """(K, N, 3) of some frames and points, NaN where missing."""
         xyz, _ = _samples(self.data, self.layout, frames, points)

@@ -141,7 +141,7 @@ def _takes(
         own = np.array(chosen, dtype=np.int64)
         named = tuple(markers[i] for i in chosen)
         record = C3dRecord(data, layout, named, own, space.units[own], parameters)
-        filled = _filled(points, own)
+        filled = points.filled(own)
         source = Source(path, "c3d", digest, space.unit, space.to_inside, performer, record)
         takes.append(
             MarkerTake(
@@ -156,14 +156,6 @@ def _takes(
             )
         )
     return takes
-
-
-def _filled(points: Points, own: NDArray[np.int64]) -> NDArray[np.bool_] | None:
-    """Samples without camera and residual, of markers that otherwise have them, were computed."""
-    there = ~points.missing[:, own]
-    measured = points.measured[:, own] & there
-    filled = there & ~measured & (measured.sum(axis=0) * 2 > there.sum(axis=0))
-    return filled if filled.any() else None
 
 
 def _at_rate(events: tuple[Event, ...], stated: Fraction, used: Fraction) -> tuple[Event, ...]:

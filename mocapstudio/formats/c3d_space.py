@@ -80,6 +80,10 @@ def find_space(
     layout = points.layout
     some = np.unique(np.linspace(0, layout.frames - 1, _SOME).astype(int))
     seen = points.coordinates(some, chosen).astype(np.float64)
+    # What was filled in tells nothing new: a file means the same before and after.
+    filled = points.filled(chosen)
+    if filled is not None:
+        seen[filled[some]] = np.nan
     units, unit = _units(seen, chosen, layout.points, parameters, options, problems)
     up = _to_inside(
         seen * units[chosen, None], tuple(markers.values()), parameters, options, problems

@@ -78,6 +78,39 @@ def test_edits_touch_their_cells_alone(path: Path, tmp_path: Path) -> None:
     assert cells == expected
 
 
+def lying(tmp_path: Path) -> Path:
+    """A body that lies still, most of its markers unseen most of the time; no up axis stated."""
+    t = np.linspace(0, 1, 12)
+    xyz = np.stack([1800 * t, 120 * np.sin(9 * t), 90 * np.cos(7 * t)], axis=1)
+    xyz = np.repeat(xyz[None], 60, axis=0) + 5 * np.sin(np.arange(60))[:, None, None]
+    fourth = np.zeros((60, 12))
+    # Only those in the middle, set on end, are seen all the time.
+    xyz[:, 4:8, 2] += np.array([0, 300, 600, 900])
+    unseen = [0, 1, 2, 3, 8, 9, 10, 11]
+    fourth[14:46, unseen] = -1
+    path = tmp_path / "lying.c3d"
+    path.write_bytes(Made(xyz, fourth).data())
+    return path
+
+
+def test_what_was_filled_changes_no_guess_and_stays_marked(tmp_path: Path) -> None:
+    path = lying(tmp_path)
+    take = read_one(path)
+    assert take.filled is None
+    gaps = take.missing
+    # What is filled would say by itself that another axis points up.
+    positions = np.where(gaps[..., None], take.positions[:1], take.positions)
+    out = tmp_path / "out.c3d"
+    declared = [Declared(label, 14, 46) for label in take.labels]
+    write(take.with_positions(positions, gaps), out, declared=declared)
+    again = read_one(out)
+    np.testing.assert_allclose(again.positions, positions, atol=6e-5)
+    np.testing.assert_array_equal(again.filled, gaps)
+    # Coordinates that were there are the same to the bit.
+    before, after = (read_one(one, up="y").positions for one in (path, out))
+    assert np.array_equal(before[~gaps], after[~gaps])
+
+
 def test_changes_that_nobody_declared_are_refused(path: Path, tmp_path: Path) -> None:
     take = read_one(path)
     positions = take.positions.copy()
