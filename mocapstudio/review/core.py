@@ -20,7 +20,7 @@ from mocapstudio.review.announcer import Announcer
 from mocapstudio.review.decisions import Stamp
 from mocapstudio.review.history import History, same
 from mocapstudio.review.marker_replay import MarkerResults
-from mocapstudio.review.model import QueueItem, Selection, Sitting
+from mocapstudio.review.model import QueueItem, Sitting
 from mocapstudio.review.queue import Queue
 from mocapstudio.review.recorder import Nobody, Recorder
 from mocapstudio.review.replay import Results
@@ -62,8 +62,6 @@ class Core:
         self._queues: dict[str, tuple[tuple[Flag, ...], Queue]] = {}
         # Performers whose takes were not found; what was decided about them is kept.
         self.absent: tuple[TakeRecord, ...] = ()
-        # A selected flag that was deferred, and the line of the queue it had left.
-        self._resume: tuple[str, int] | None = None
 
     @property
     def state(self) -> DocumentState:
@@ -148,8 +146,6 @@ class Core:
             new = replace(new, selection=replace(new.selection, flag=None))
         new = replace(new, dirty=self._is_dirty(new))
         changed = differing(old, new)
-        if "selection" in changed:
-            self._resume = None
         if changed:
             self._state = new
             if changed & _LASTING:
@@ -158,11 +154,11 @@ class Core:
                 self.recorder.compared(new.comparison)
             self._announcer.announce(old, new)
 
-    def _commit(self, label: str, sitting: Sitting, **changes: Any) -> None:
+    def _commit(self, label: str, sitting: Sitting) -> None:
         """Go on to another sitting, as one step unless a group is open."""
         before = self._history.present
         if same(before, sitting):
-            self._put(**changes)
+            self._put()
             return
         for performer in self._state.scene.performers:
             protection.check_edits(performer.take, performer.id, before, sitting)
@@ -171,7 +167,7 @@ class Core:
             self.recorder.stepped(label, before, sitting)
         else:
             self._history = replace(self._history, present=sitting)
-        self._put(**changes)
+        self._put()
 
     def _travel(
         self,
@@ -239,15 +235,6 @@ class Core:
         take = self._take(performer)
         trim = dict(self._history.present.trims).get(performer, take.trim)
         return None if trim == (0, take.frames) else trim
-
-    def _at(self, item: QueueItem | None) -> dict[str, Any]:
-        """Fields of a state that shows an item of the queue; none where there is no item."""
-        if item is None:
-            return {}
-        flag = item.flag
-        span = (flag.start, flag.end)
-        selection = Selection(self._state.active, frozenset([flag.joint]), span, flag.id)
-        return {"selection": selection, "frame": flag.peak_frame}
 
 
 def new_id() -> str:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from mocapstudio.cleaning.model import Flag, Proposal
 from mocapstudio.motion.errors import MocapError
-from mocapstudio.review import decisions, protection, walk
+from mocapstudio.review import decisions, protection
 from mocapstudio.review.core import new_id
 from mocapstudio.review.keeping import Keeping
 from mocapstudio.review.model import Edit, Protected, QueueItem, Verdict
@@ -18,15 +18,10 @@ from mocapstudio.review.rows import check_rows, check_span
 class Deciding(Keeping):
     """Verdicts, edits, protected spans and trims of the active performer."""
 
-    def accept(self, flag_ids: str | Iterable[str], advance: bool = False) -> None:
+    def accept(self, flag_ids: str | Iterable[str]) -> None:
         """Accept flags with their proposals: decisions and edits, one undo step together.
 
         An accepted flag whose proposal is another by now gets that in place of its edit.
-
-        Parameters
-        ----------
-        advance
-            Select the next undecided flag.
 
         Raises
         ------
@@ -40,21 +35,21 @@ class Deciding(Keeping):
             if edit is not None:
                 items.append(item)
                 edits.append(edit)
-        self._decide(_labelled("Accept", items), items, Verdict.ACCEPTED, stamp, edits, advance)
+        self._decide(_labelled("Accept", items), items, Verdict.ACCEPTED, stamp, edits)
 
-    def reject(self, flag_ids: str | Iterable[str], advance: bool = False) -> None:
+    def reject(self, flag_ids: str | Iterable[str]) -> None:
         """Reject flags: the motion is right as it is; an accepted one loses its edit."""
-        self._judge("Reject", flag_ids, Verdict.REJECTED, advance)
+        self._judge("Reject", flag_ids, Verdict.REJECTED)
 
-    def defer(self, flag_ids: str | Iterable[str], advance: bool = False) -> None:
+    def defer(self, flag_ids: str | Iterable[str]) -> None:
         """Leave flags for later, at the end of the queue; an accepted one loses its edit."""
-        self._judge("Defer", flag_ids, Verdict.DEFERRED, advance)
+        self._judge("Defer", flag_ids, Verdict.DEFERRED)
 
     def reopen(self, flag_ids: str | Iterable[str]) -> None:
         """Take back what was decided about flags."""
-        self._judge("Reopen", flag_ids, Verdict.OPEN, False)
+        self._judge("Reopen", flag_ids, Verdict.OPEN)
 
-    def reject_like(self, flag_id: str, band: float = 0.1, advance: bool = False) -> int:
+    def reject_like(self, flag_id: str, band: float = 0.1) -> int:
         """Reject a flag and the open ones like it; returns how many.
 
         Parameters
@@ -67,7 +62,7 @@ class Deciding(Keeping):
         label = f"Reject {len(items)} like {item.flag.joint}"
         if len(items) == 1:
             label = _labelled("Reject", items)
-        self._decide(label, items, Verdict.REJECTED, self._stamp(), (), advance)
+        self._decide(label, items, Verdict.REJECTED, self._stamp(), ())
         return len(items)
 
     def add_edit(self, proposal: Proposal, label: str = "Edit") -> str:
@@ -119,11 +114,9 @@ class Deciding(Keeping):
             others = tuple(t for t in sitting.trims if t[0] != performer)
             self._commit("Trim", replace(sitting, trims=(*others, (performer, (start, end)))))
 
-    def _judge(
-        self, word: str, flag_ids: str | Iterable[str], verdict: Verdict, advance: bool
-    ) -> None:
+    def _judge(self, word: str, flag_ids: str | Iterable[str], verdict: Verdict) -> None:
         items = [i for i in self._items(flag_ids) if i.verdict is not verdict]
-        self._decide(_labelled(word, items), items, verdict, self._stamp(), (), advance)
+        self._decide(_labelled(word, items), items, verdict, self._stamp(), ())
 
     def _decide(
         self,
@@ -132,20 +125,11 @@ class Deciding(Keeping):
         verdict: Verdict,
         stamp: decisions.Stamp,
         edits: Sequence[Edit],
-        advance: bool,
     ) -> None:
-        queue, selected = self._state.queue, self._state.selection.flag
-        deferred = {i.flag.id for i in items} if verdict is Verdict.DEFERRED else set()
-        place = walk.place(queue, selected) if selected in deferred else None
-        following = walk.following(queue, {i.flag.id for i in items}) if advance else None
-        performer, sitting = self._state.active, self._history.present
         if items:
+            performer, queue, sitting = self._state.active, self._state.queue, self._history.present
             after = decisions.decide(sitting, performer, queue, items, verdict, stamp, edits)
-            self._commit(label, after, **self._at(following))
-        elif following is not None:
-            self._put(**self._at(following))
-        if place is not None and selected is not None and following is None:
-            self._resume = (selected, place)
+            self._commit(label, after)
 
     def _edit_for(self, item: QueueItem, stamp: decisions.Stamp) -> Edit | None:
         """Make the edit that accepting would add; None where the flag has that very edit."""

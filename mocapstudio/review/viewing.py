@@ -99,29 +99,6 @@ class Viewing(Core):
         frame = walk.same_moment(self._state.performer, to, self._state.frame)
         self._put(active=performer, selection=Selection(performer), frame=frame)
 
-    def place_performer(
-        self, performer: str, offset: float | None = None, partner: bool | None = None
-    ) -> None:
-        """Move a performer on the scene's clock, or make it a partner or none.
-
-        Parameters
-        ----------
-        offset
-            Seconds by which the take starts after the scene's zero; None leaves it.
-        partner
-            True for a take that is only shown beside the one under review; None leaves it.
-        """
-        self._take(performer)
-        old = self._state.scene.performer(performer)
-        new = replace(
-            old,
-            offset=old.offset if offset is None else float(offset),
-            partner=old.partner if partner is None else partner,
-        )
-        if (new.offset, new.partner) != (old.offset, old.partner):
-            every = self._state.scene.performers
-            self._put(scene=Scene(tuple(new if p is old else p for p in every)))
-
     def set_frame(self, n: int) -> None:
         """Go to a frame of the active take; numbers outside are brought to its ends."""
         take = self._state.take
@@ -165,19 +142,6 @@ class Viewing(Core):
             self._state.active, frozenset([flag.joint]), (flag.start, flag.end), flag.id
         )
         self._put(selection=selection, frame=flag.peak_frame)
-
-    def next_flag(self, step: int = 1, undecided: bool = False) -> None:
-        """Select the flag `step` lines further down the queue (up if negative), around its ends.
-
-        Parameters
-        ----------
-        undecided
-            Skip flags that were accepted or rejected.
-        """
-        queue = self._state.queue
-        flag = walk.next_item(queue, self._state.selection.flag, step, undecided, self._resume)
-        if flag is not None:
-            self.select_flag(flag)
 
     def set_threshold(self, x: float) -> None:
         """Flag again above another value of the map; decided flags stay.

@@ -243,33 +243,14 @@ def test_without_an_analysis_an_unknown_proposal_is_a_clear_error() -> None:
         document.accept(A.id)
 
 
-def test_deferred_flags_go_to_the_end_and_the_walk_goes_on_where_they_were() -> None:
+def test_deferred_flags_go_to_the_end_and_come_back_with_undo() -> None:
     document = document_with(A, B, C)
     document.select_flag(B.id)
     document.defer(B.id)
     assert [i.flag.id for i in document.state.queue] == [A.id, C.id, B.id]
-    for expected in (C.id, B.id, A.id, C.id):
-        document.next_flag()
-        assert document.state.selection.flag == expected
-    document.undo()
-    document.select_flag(B.id)
-    document.defer(B.id)
-    document.next_flag(-1)
-    assert document.state.selection.flag == A.id
-
-
-def test_deciding_goes_on_to_the_next_undecided_flag_if_asked() -> None:
-    document = document_with(A, B, C)
-    document.select_flag(A.id)
-    document.accept(A.id, advance=True)
-    assert document.state.selection == Selection("walk", frozenset(["LeftLeg"]), (40, 50), B.id)
-    assert document.state.frame == B.peak_frame
-    document.defer(B.id, advance=True)
-    assert document.state.selection.flag == C.id
-    document.reject(C.id, advance=True)
-    assert document.state.selection.flag == B.id, "only the deferred one is left"
-    document.next_flag(undecided=True)
     assert document.state.selection.flag == B.id
+    document.undo()
+    assert [i.flag.id for i in document.state.queue] == [A.id, B.id, C.id]
 
 
 def test_select_leaves_what_is_not_named_and_clears_what_is_empty() -> None:

@@ -81,11 +81,9 @@ class Sittings(RuleBasedStateMachine):
         self.offer(ids := self.ids(picks))
         self.attempt(self.document.accept, ids)
 
-    @rule(picks=_picks, word=st.sampled_from(["reject", "defer", "reopen"]), on=st.booleans())
-    def judge(self, picks, word: str, on: bool) -> None:
-        intent = getattr(self.document, word)
-        arguments = (self.ids(picks), on) if word != "reopen" else (self.ids(picks),)
-        self.attempt(intent, *arguments)
+    @rule(picks=_picks, word=st.sampled_from(["reject", "defer", "reopen"]))
+    def judge(self, picks, word: str) -> None:
+        self.attempt(getattr(self.document, word), self.ids(picks))
 
     @rule(pick=st.integers(0, 30), band=st.floats(0, 1))
     def reject_like(self, pick: int, band: float) -> None:
@@ -131,9 +129,10 @@ class Sittings(RuleBasedStateMachine):
         if edits := self.document.state.sitting.edits:
             self.attempt(self.document.delete_edit, edits[n % len(edits)].id)
 
-    @rule(step=st.sampled_from([-2, -1, 1, 3]), undecided=st.booleans())
-    def walk(self, step: int, undecided: bool) -> None:
-        self.document.next_flag(step, undecided)
+    @rule(n=st.integers(0, 30))
+    def walk(self, n: int) -> None:
+        if queue := self.document.state.queue:
+            self.document.select_flag(queue[n % len(queue)].flag.id)
 
     @rule()
     def undo(self) -> None:
