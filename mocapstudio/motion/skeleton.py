@@ -90,11 +90,6 @@ class Skeleton:
         return result
 
     @cached_property
-    def end_effectors(self) -> tuple[int, ...]:
-        """Joints without children."""
-        return tuple(j for j, below in enumerate(self.children) if not below)
-
-    @cached_property
     def rest_positions(self) -> NDArray[np.float64]:
         """(J, 3) metres: joint positions in the rest pose, root at its own offset."""
         positions = self.offsets.copy()

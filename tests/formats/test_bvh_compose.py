@@ -104,7 +104,8 @@ def test_every_rate_is_told_again(tmp_path: Path, rate) -> None:
 def test_leaves_get_end_sites(tmp_path: Path) -> None:
     formats.write(made(), tmp_path / "out.bvh")
     (again,), _ = formats.read(tmp_path / "out.bvh")
-    leaves = {again.skeleton.names[j] for j in again.skeleton.end_effectors}
+    below = again.skeleton.children
+    leaves = {name for name, j in again.skeleton.index.items() if not below[j]}
     assert leaves == {again.skeleton.names[j] for j in again.skeleton.end_parents}
 
 

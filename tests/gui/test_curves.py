@@ -110,9 +110,16 @@ def _tinted(colour, wanted):
     return min(parts) > -12
 
 
+def choose(view, quantity: Quantity) -> None:
+    chooser = view.panel.chooser
+    at = chooser.findData(quantity)
+    chooser.setCurrentIndex(at)
+    chooser.activated.emit(at)
+
+
 def test_the_position_curve_holds_metres_of_the_world(view, document):
     document.select(joints=["LeftHand"])
-    view.show_quantity(Quantity.POSITION)
+    choose(view, Quantity.POSITION)
     take = document.state.take
     positions, _ = take_pose(take)
     drawn = view.curve_set.curves(Role.ORIGINAL)
@@ -126,7 +133,7 @@ def test_the_position_curve_holds_metres_of_the_world(view, document):
 
 def test_root_rows_have_quantities_of_their_own_and_choices_are_remembered(view, document):
     document.select(joints=["Head"])
-    view.show_quantity(Quantity.SPEED)
+    choose(view, Quantity.SPEED)
     document.select(joints=["root heading"])
     assert view.quantity is Quantity.HEADING
     offered = [view.panel.chooser.itemData(i) for i in range(view.panel.chooser.count())]
@@ -144,7 +151,7 @@ def test_euler_angles_come_in_the_order_of_the_file(qtbot, data):
     view = shown(qtbot, document)
     for row in ("hip", "lForeArm"):
         document.select(joints=[row])
-        view.show_quantity(Quantity.EULER)
+        choose(view, Quantity.EULER)
         order = euler_order(take, take.skeleton.index[row])
         assert view.curve_set.curves(Role.ORIGINAL).names == tuple(order.lower())
     assert euler_order(take, 0) == "ZYX"
@@ -208,7 +215,7 @@ def test_a_click_and_the_play_head_itself_move_the_frame(view, document):
 
 def test_the_values_fit_the_visible_frames(view, document):
     document.select(joints=["LeftHand"])
-    view.show_quantity(Quantity.POSITION)
+    choose(view, Quantity.POSITION)
     values = view.curve_set.curves(Role.ORIGINAL).values
     for start, end in ((0, 1199), (500, 560)):
         view.time_range.show(start, end)

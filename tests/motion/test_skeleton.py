@@ -35,7 +35,7 @@ def test_the_family_of_a_joint() -> None:
     for joint, below_it in enumerate(skeleton.children):
         assert all(skeleton.parents[child] == joint for child in below_it)
     assert sum(map(len, skeleton.children)) == len(skeleton) - 1
-    ends = {names[j] for j in skeleton.end_effectors}
+    ends = {name for name, below in zip(names, skeleton.children, strict=True) if not below}
     assert ends == {"Head", "LeftHand", "RightHand", "LeftFoot", "RightFoot"}
 
 

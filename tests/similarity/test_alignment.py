@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mocapstudio.motion.errors import ParameterError
+from mocapstudio.motion.progress import run
 from mocapstudio.similarity.alignment import dtw, kernels
 from mocapstudio.similarity.alignment.costs import KnownCosts, PoseDistances, ReliableDistances
 from mocapstudio.similarity.alignment.dtw import (
@@ -22,7 +23,7 @@ from mocapstudio.similarity.alignment.dtw import (
     align,
     align_in_band,
 )
-from mocapstudio.similarity.alignment.frugal import align_frugally
+from mocapstudio.similarity.alignment.frugal import aligning_frugally
 
 ENDS = [
     CLOSED,
@@ -113,7 +114,7 @@ def test_every_way_finds_a_cheapest_path(
     with mock.patch.object(dtw, "_CELLS", cells):
         every = (
             align(costs, ends),
-            align_frugally(costs, ends, cells=30),
+            run(aligning_frugally(costs, ends, cells=30)),
             align_in_band(costs, 100, ends),
         )
     for found in every:
@@ -180,7 +181,7 @@ def test_the_frugal_way_holds_only_the_cells_it_may(monkeypatch: pytest.MonkeyPa
 
     monkeypatch.setattr(dtw, "_CELLS", 40_000)
     costs = Watched(wander(700, 4, 5), wander(900, 4, 6))
-    found = align_frugally(costs, cells=20_000)
+    found = run(aligning_frugally(costs, cells=20_000))
     assert found.cost == pytest.approx(align(PoseDistances(costs.reference, costs.source)).cost)
     assert largest <= 3 * 40_000 < 700 * 900 / 4
 

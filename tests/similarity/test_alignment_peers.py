@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from mocapstudio.evaluation.kata_peers import dtaidistance, dtw_python
+from mocapstudio.motion.progress import run
 from mocapstudio.similarity.alignment.costs import KnownCosts, PoseDistances
 from mocapstudio.similarity.alignment.dtw import (
     WITHIN_SOURCE,
@@ -15,7 +16,7 @@ from mocapstudio.similarity.alignment.dtw import (
     align,
     align_in_band,
 )
-from mocapstudio.similarity.alignment.frugal import align_frugally
+from mocapstudio.similarity.alignment.frugal import aligning_frugally
 
 WHY = "pip install mocapstudio[peers]"
 
@@ -37,7 +38,7 @@ def test_cost_and_path_are_those_of_dtw_python() -> None:
     reference, source = (wander(n, 12, n).astype(np.float32) for n in (90, 120))
     cost, path = dtw_python(reference.astype(float), source.astype(float))
     costs = PoseDistances(reference, source)
-    for found in (align(costs), align_frugally(costs, cells=500)):
+    for found in (align(costs), run(aligning_frugally(costs, cells=500))):
         assert found.cost == pytest.approx(cost, rel=1e-5)
         np.testing.assert_array_equal(found.path, path)
 

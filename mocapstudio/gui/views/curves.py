@@ -266,11 +266,6 @@ class CurvesView(HintedPlotView):
         if self._shown is not None and self._shown.selection.span is not None:
             self.time_range.focus(*self._shown.selection.span)
 
-    def show_quantity(self, quantity: Quantity) -> None:
-        """Show another quantity, where the row has it."""
-        if self._row is not None and quantity in quantities_of(self._row):
-            self._choose(quantity)
-
     def _choose(self, quantity: Quantity) -> None:
         if self._row is not None and quantity != self.quantity:
             self._wanted[quantities_of(self._row)] = quantity

@@ -12,7 +12,7 @@ from collections.abc import Generator
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapstudio.motion.progress import Progress, run
+from mocapstudio.motion.progress import Progress
 from mocapstudio.similarity.alignment.costs import Costs
 from mocapstudio.similarity.alignment.dtw import (
     CLOSED,
@@ -30,21 +30,16 @@ CELLS = 4_000_000
 """Pairs that are aligned at once."""
 
 
-def align_frugally(costs: Costs, ends: Ends = CLOSED, cells: int = CELLS) -> Alignment:
-    """Find the cheapest path; memory grows with the sum of the lengths.
+def aligning_frugally(
+    costs: Costs, ends: Ends = CLOSED, cells: int = CELLS
+) -> Generator[Progress, None, Alignment]:
+    """Find the cheapest path and yield progress; memory grows with the sum of the lengths.
 
     Parameters
     ----------
     cells
         Pairs whose accumulated costs may be held at once.
     """
-    return run(aligning_frugally(costs, ends, cells))
-
-
-def aligning_frugally(
-    costs: Costs, ends: Ends = CLOSED, cells: int = CELLS
-) -> Generator[Progress, None, Alignment]:
-    """Do as `align_frugally` and yield progress."""
     first, last = (0, 0), (costs.shape[0] - 1, costs.shape[1] - 1)
     if ends.end is not None:
         bottom, right = yield from _last(costs, Ends(ends.begin), 0.0, 0.2)
