@@ -12,9 +12,9 @@ from mocapstudio.gui.compare.bridge import Alignment
 from mocapstudio.gui.compare.exporting import Exporting
 from mocapstudio.gui.compare.part import WorkspacePart
 from mocapstudio.gui.compare.segmenting import Segmenting
+from mocapstudio.gui.compare.sitting_takes import SittingTakes
 from mocapstudio.gui.dialogs.files import FileRequest, ask_for_files
 from mocapstudio.gui.workspaces.workspace import Answers
-from mocapstudio.review.comparing import Recording
 
 if TYPE_CHECKING:
     from mocapstudio.gui.main_window import MainWindow
@@ -36,6 +36,7 @@ class Answering(WorkspacePart):
         super().__init__(window, workspace)
         self._segmenting = Segmenting(window, workspace)
         self._exporting = Exporting(window, workspace)
+        self._sitting_takes = SittingTakes(window, workspace)
         self._slots = self._files() | self._views() | self._heads()
         self._slots |= self._segmenting.slots() | self._exporting.slots()
 
@@ -71,7 +72,7 @@ class Answering(WorkspacePart):
         reference, source = state.reference is not None, state.source is not None
         linked, several = state.linked is not None, len(state.sources) > 1
         segment, some = state.segment is not None, bool(state.segments)
-        opened = bool(self._window.bridge.state.scene.performers)
+        opened = bool(self._window.bridge.state.everyone)
         found = dict.fromkeys(self._slots, linked)
         return found | {
             "open": True, "new": reference, "compare-reference": True, "compare-sources": True,
@@ -94,13 +95,13 @@ class Answering(WorkspacePart):
     # -- who is compared
 
     def _files(self) -> Slots:
-        sitting, working = self._bridge.sitting, self._workspace.working
+        sitting = self._bridge.sitting
         return {
             "open": self._ask_sources,
             "new": sitting.clear,
             "compare-reference": self._ask_reference,
             "compare-sources": self._ask_sources,
-            "compare-scene": lambda: working.take_in(self._scene()),
+            "compare-scene": self._sitting_takes.take_in,
             "compare-swap": sitting.swap,
             "compare-remove": lambda: sitting.remove(self._bridge.state.chosen),
             "compare-next": partial(self._step_source, 1),
@@ -116,17 +117,6 @@ class Answering(WorkspacePart):
     def _ask_sources(self) -> None:
         request = FileRequest("Add performances to compare", "compare", several=True)
         ask_for_files(self._window, request, self._workspace.working.add_sources)
-
-    def _scene(self) -> list[Recording]:
-        state = self._window.bridge.state
-        performers = sorted(state.scene.performers, key=lambda one: one.id != state.active)
-        edited = {one.performer for one in state.sitting.edits if not one.muted}
-        found = [self._window.bridge.document.result(one.id) for one in performers]
-        # What was repaired is no longer what its file holds.
-        return [
-            replace(take, source=None) if one.id in edited else take
-            for one, take in zip(performers, found, strict=True)
-        ]
 
     def _step_source(self, by: int) -> None:
         ranking = [one.id for one in self._bridge.state.ranking]

@@ -10,7 +10,7 @@ COMPARE = (
     Command("compare-sources", "Add &Sources…", "Add performances to be compared, up to eight",
             ("Ctrl+Shift+A",), "add"),
     Command("compare-scene", "From the Re&view",
-            "Compare the performers open for review: the active one is the reference",
+            "Compare what is open, joints or markers, with what was edited of them",
             ("Ctrl+Shift+R",), "partner"),
     Command("compare-swap", "S&wap", "Let reference and chosen source change places",
             ("R",), "swap"),

@@ -17,6 +17,7 @@ from mocapstudio.gui.markers.bridge import MarkersBridge, MarkersShown
 from mocapstudio.gui.markers.nearness import nearest_markers
 from mocapstudio.gui.markers.working import Working
 from mocapstudio.motion.progress import Progress
+from mocapstudio.review.performances import marker_performance
 
 if TYPE_CHECKING:
     from mocapstudio.gui.main_window import MainWindow
@@ -106,8 +107,9 @@ class Filing(QObject):
 
     def compare(self) -> None:
         """Set the markers beside another performance."""
-        if self._bridge.shown.result is not None:
-            self._window.files.markers.compare([self._bridge.shown.result])
+        shown, document = self._bridge.shown, self._bridge.desk.document
+        if shown.result is not None:
+            self._window.files.markers.compare([marker_performance(document, shown.performer)])
 
     def close(self) -> None:
         """Take the marker take out of the sitting."""
