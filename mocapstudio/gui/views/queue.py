@@ -24,13 +24,13 @@ from mocapstudio.review.state import DocumentState
 
 _WIDTHS = {
     Column.RANK: 36,
-    Column.TIME: 66,
+    Column.TIME: 74,
     Column.FRAME: 46,
     Column.SCORE: 46,
     Column.KIND: 92,
-    Column.VERDICT: 90,
+    Column.VERDICT: 88,
 }
-_JOINT_WIDTH = 90
+_JOINT_WIDTH = 84
 _DISPENSABLE = (Column.FRAME, Column.KIND)
 """Left out where the queue is too narrow for all columns, the first one first."""
 
