@@ -170,7 +170,7 @@ def test_all_short_gaps_are_filled_at_once_and_taken_back_together(user, take):
     assert not bridge.shown.gaps.up_to(6)
     assert bridge.shown.gaps.in_time
     assert len({edit.group for edit in bridge.shown.edits}) == 1
-    workspace.inspector.show_edits()
+    hands.find("markers-tabs").setCurrentIndex(1)
     hands.click("marker-edit-mute")
     assert bridge.shown.gaps.up_to(6) == short
     hands.click("marker-edit-mute")
@@ -298,7 +298,7 @@ def test_the_theme_changes_with_edits_in_the_list(user, take):
     hands.press("A", SHIFT)
     hands.see(lambda: not hands.window.jobs.running and len(workspace.bridge.shown.edits) > 1)
     workspace.working.clear()
-    workspace.inspector.show_edits()
+    hands.find("markers-tabs").setCurrentIndex(1)
     for _ in range(4):
         hands.menu("View", "Light Theme")
         hands.qtbot.wait(50)

@@ -35,17 +35,13 @@ class MarkersInspector(QFrame):
         self._tabs.setDocumentMode(True)
         self._tabs.tabBar().setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self._tabs.tabBar().setDrawBase(False)
-        self._gap, self._edits = GapPage(bridge, working, actions), EditList(bridge)
+        self._gap = GapPage(bridge, working, actions)
         self._tabs.addTab(self._gap, "Gap")
-        self._tabs.addTab(self._edits, "Edits")
+        self._tabs.addTab(EditList(bridge), "Edits")
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self._tabs)
         bridge.changed.connect(self._follow)
-
-    def show_edits(self) -> None:
-        """Show the list of edits."""
-        self._tabs.setCurrentWidget(self._edits)
 
     def _follow(self, old: MarkersShown, new: MarkersShown) -> None:
         if old.edits != new.edits:
