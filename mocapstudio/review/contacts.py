@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -160,11 +160,18 @@ class Contacting(Core):
         )
         self._commit("Solve contacts", replace(sitting, edits=(*kept, *edits)))
 
-    def move_target(self, contact_id: str, target: Target, proposals: Sequence[Proposal]) -> None:
-        """Give a contact of the active performer another target, and the take what meets it.
+    def move_targets(self, targets: Mapping[str, Target], proposals: Sequence[Proposal]) -> None:
+        """Give contacts of the active performer other targets, and the take what meets them.
 
         One step. Where the last solve, or an earlier move, said something else about the same
         samples, this counts.
+
+        Parameters
+        ----------
+        targets
+            By id of the contact.
+        proposals
+            What brings the body there; none where only the targets move.
 
         Raises
         ------
@@ -172,8 +179,11 @@ class Contacting(Core):
             If there is no such contact, or it reaches into a protected span.
         """
         performer, stamp, sitting = self._state.active, self._stamp(), self._history.present
-        take, old = self._take(performer), self._contact(contact_id)
-        new = replace(old, target=target, drawn=True, confidence=1.0)
+        take = self._take(performer)
+        new = [
+            replace(self._contact(one), target=target, drawn=True, confidence=1.0)
+            for one, target in targets.items()
+        ]
         edits = tuple(
             decisions.edit_of(take, performer, one, stamp, new_id(), None) for one in proposals
         )
@@ -184,7 +194,7 @@ class Contacting(Core):
             or one.method != METHOD
             or not any(_covers(edit, one) for edit in edits)
         )
-        self._commit_contacts("Move target", gone=(old.id,), new=(new,), edits=(*kept, *edits))
+        self._commit_contacts("Move target", gone=targets, new=new, edits=(*kept, *edits))
 
     def add_key_pose(self, proposals: Sequence[Proposal]) -> None:
         """Put what was dragged in the viewport over the active take."""

@@ -132,10 +132,16 @@ class Contacts:
         names, places = stage.places()
         return stage.pixel_of(places[list(names).index(contact.id)])
 
-    def drag_target(self, contact: Contact, way: QPointF, keys: tuple[Qt.Key, ...] = ()) -> None:
+    def drag_target(
+        self,
+        contact: Contact,
+        way: QPointF,
+        keys: tuple[Qt.Key, ...] = (),
+        modifiers: Qt.KeyboardModifier = mouse.PLAIN,
+    ) -> None:
         canvas, begin = self.space.stage.dragging.parent(), self.marker(contact)
         held = mouse.LEFT
-        mouse.send(canvas, mouse.QEvent.Type.MouseButtonPress, begin, held, held)
+        mouse.send(canvas, mouse.QEvent.Type.MouseButtonPress, begin, held, held, modifiers)
         for share in (0.3, 0.7, 1.0):
             at = begin + way * share
             mouse.send(canvas, mouse.QEvent.Type.MouseMove, at, mouse.NOTHING, held)
@@ -380,6 +386,56 @@ def test_the_body_follows_a_dragged_target_and_stays_when_it_is_let_go(
     hands.press("Z", CTRL)
     np.testing.assert_array_equal(user.result.rotations, before.rotations)
     assert next(c for c in user.contacts() if c.id == ball.id).target == fixed.target
+
+
+def test_a_foot_goes_as_a_whole_unless_a_point_is_dragged_alone(
+    hands: Hands, slipping: Path
+) -> None:
+    user = Contacts(hands, slipping)
+    user.detect()
+    user.solve()
+    hands.press("S", SHIFT)
+    joints = ("RightFoot", "heel"), ("RightToe", "ball")
+    heel, ball = (of(user.contacts(), *one) for one in joints)
+    frame = max(heel.start, ball.start) + 3
+    assert frame < min(heel.end, ball.end)
+    user.document.set_frame(frame)
+    user.click_contact(heel)
+    sitting, steps, start = user.state.sitting, user.state.can_undo, user.result
+    points = user.space.readings.now.points
+    numbers = [[p.key for p in points].index(key) for key in joints]
+
+    def feet() -> np.ndarray:
+        return point_positions(user.result, points)[frame, numbers]
+
+    def ring(contact: Contact) -> QPointF:
+        return user.marker(next(c for c in user.contacts() if c.id == contact.id))
+
+    # Both points go the same way, and so do both rings.
+    before, rings = feet(), [ring(heel), ring(ball)]
+    user.drag_target(heel, QPointF(12.0, -24.0))
+    assert user.state.can_undo == "Move target"
+    hands.see(lambda: user.space.readings.now.after is user.result)
+    gone = feet() - before
+    assert np.linalg.norm(gone[0]) > 0.02
+    np.testing.assert_allclose(gone[1], gone[0], atol=4e-3)
+    unmet = {one.contact for one in user.space.bridge.ui.unreached}
+    assert not unmet & {heel.id, ball.id}
+    for was, contact in zip(rings, (heel, ball), strict=True):
+        way = ring(contact) - was
+        assert way.x() == pytest.approx(12.0, abs=3.0)
+        assert way.y() == pytest.approx(-24.0, abs=3.0)
+    hands.press("Z", CTRL)
+    assert user.state.sitting == sitting
+    assert user.state.can_undo == steps
+    np.testing.assert_array_equal(user.result.rotations, start.rotations)
+
+    # With Ctrl the other target stays what it was.
+    hands.see(lambda: user.space.readings.now.after is user.result)
+    user.drag_target(heel, QPointF(12.0, -24.0), modifiers=CTRL)
+    kept = {c.id: c for c in user.contacts()}
+    assert kept[heel.id].target != heel.target
+    assert kept[ball.id] == ball
 
 
 @pytest.fixture

@@ -112,6 +112,8 @@ class Drag:
         The frame that is shown.
     point
         What is dragged.
+    along
+        Points that are to go with it, such as the ball with the heel of a foot.
     pins
         Points that stay where they are, such as the feet while the hips are dragged.
     whole_body
@@ -132,6 +134,7 @@ class Drag:
         frame: int,
         point: ContactPoint,
         *,
+        along: Sequence[ContactPoint] = (),
         pins: Sequence[ContactPoint] = (),
         whole_body: bool = False,
         ranges: JointRanges | None = None,
@@ -141,6 +144,7 @@ class Drag:
         self._take, self._frame, self._point = take, frame, point
         self._ranges = ranges or joint_ranges([take])
         self._joint = _index(take, point)
+        self._along = [(one, _index(take, one)) for one in along]
         self._pins = [(pin, _index(take, pin)) for pin in pins if pin.key != point.key]
         self._free = self._freedom(whole_body)
         self._view, self._wishes = self._laid(frame, frame + 1)
@@ -151,15 +155,21 @@ class Drag:
         """The frame as it looks now."""
         return KeptFrame(self._frame, self._unknowns[0].copy())
 
-    def to(self, target: Array) -> DragPose:
-        """Pose the frame with the dragged point at `target` (3,) metres, or as near as it gets."""
+    def to(self, target: Array, along: Sequence[Array | None] = ()) -> DragPose:
+        """Pose the frame with the dragged point at `target` (3,) metres, or as near as it gets.
+
+        Parameters
+        ----------
+        along
+            (3,) metres for each of the points that go along, or None where it goes as it likes.
+        """
         goal = np.asarray(target, dtype=float)
-        now = Posed(self._view, self._free, self._unknowns).point(self._joint, self._point.offset)
-        share = _FARTHEST / max(float(np.linalg.norm(goal - now[0])), _FARTHEST)
-        near = now + share * (goal - now)
-        pull = PointAtTarget(self._joint, self._point.offset, np.array([0]), near, _PULL, np.eye(3))
+        pulls = [self._pull(self._point, self._joint, goal)]
+        for (point, joint), place in zip(self._along, along, strict=bool(along)):
+            if place is not None:
+                pulls.append(self._pull(point, joint, place))
         keep = KeepPose(1, self._free.stiffness)
-        problem = Problem(self._view, self._free, [pull, *self._wishes], [keep])
+        problem = Problem(self._view, self._free, [*pulls, *self._wishes], [keep])
         solution = solve(problem, self._unknowns, _MOST_STEPS, _TOLERANCE)
         self._unknowns = solution.unknowns
         posed = problem.posed(self._unknowns)
@@ -168,6 +178,12 @@ class Drag:
         shown = with_departures(one, [Departure((0, 1), problem, self._unknowns)])
         gap = float(np.linalg.norm(point - goal))
         return DragPose(shown, point, gap if gap > 1e-3 else 0.0)
+
+    def _pull(self, point: ContactPoint, joint: int, goal: Array) -> PointAtTarget:
+        now = Posed(self._view, self._free, self._unknowns).point(joint, point.offset)
+        share = _FARTHEST / max(float(np.linalg.norm(goal - now[0])), _FARTHEST)
+        near = now + share * (goal - now)
+        return PointAtTarget(joint, point.offset, np.array([0]), near, _PULL, np.eye(3))
 
     def release(self, seconds: float) -> DragResult:
         """Spread what was dragged over `seconds` before and after the frame."""
@@ -194,7 +210,8 @@ class Drag:
     def _freedom(self, whole_body: bool) -> Freedom:
         skeleton = self._take.skeleton
         parts = topology(skeleton)
-        joints = set(chain(skeleton, self._joint, self._ranges))
+        dragged = {self._joint, *(joint for _, joint in self._along)}
+        joints = {j for one in dragged for j in chain(skeleton, one, self._ranges)}
         trunk = next(limb.joints for limb in parts.limbs if limb.name == "spine")
         moves = whole_body or self._joint in trunk
         if moves:
@@ -209,7 +226,7 @@ class Drag:
 
     def _laid(self, start: int, end: int) -> tuple[Window, list[Objective]]:
         """Cut the frames [start, end); state what holds in them whatever is dragged."""
-        ends = [self._joint, *(joint for _, joint in self._pins)]
+        ends = [self._joint, *(joint for _, joint in (*self._along, *self._pins))]
         view = window(self._take, start, end, [*ends, *self._free.joints])
         asis = Posed(view, self._free, np.zeros((end - start, self._free.size)))
         frames = np.arange(end - start)

@@ -43,19 +43,28 @@ class Bending:
         frame: int,
         point: ContactPoint,
         *,
+        along: Sequence[ContactPoint] = (),
         pins: Sequence[ContactPoint] = (),
     ) -> None:
-        """Take hold of a point of the body at a frame; points in `pins` stay where they are."""
+        """Take hold of a point of the body at a frame.
+
+        Points in `along` go with it, points in `pins` stay where they are.
+        """
         self.end()
         self.frame = frame
-        self._drag = Drag(reading.after, frame, point, pins=pins, ranges=reading.ranges)
+        self._drag = Drag(
+            reading.after, frame, point, along=along, pins=pins, ranges=reading.ranges
+        )
 
-    def to(self, place: Array) -> DragPose | None:
-        """Show the frame with the point at a place (3,) metres, or as near as it gets."""
+    def to(self, place: Array, along: Sequence[Array | None] = ()) -> DragPose | None:
+        """Show the frame with the point at a place (3,) metres, or as near as it gets.
+
+        `along` are places of what goes with it, see `Drag.to`.
+        """
         motion = self._motion()
         if self._drag is None or motion is None:
             return None
-        self.pose = self._drag.to(place)
+        self.pose = self._drag.to(place, along)
         points = _points(self.pose)
         if self._stand_in is None:
             self._stand_in = StandIn(motion, self.frame, points)
@@ -69,9 +78,11 @@ class Bending:
         """How the performer moves for now, or None while nothing is bent."""
         return self._stand_in
 
-    def place_at(self, frame: int) -> Array | None:
-        """(3,) metres: where the dragged point got to, or None at frames that are not bent."""
-        return None if self.pose is None or frame != self.frame else self.pose.point
+    def place_at(self, frame: int, point: ContactPoint | None = None) -> Array | None:
+        """(3,) metres: where the dragged point, or another, got to; None at unbent frames."""
+        if self.pose is None or frame != self.frame:
+            return None
+        return self.pose.point if point is None else carried(self.pose, [point])[0]
 
     @property
     def kept(self) -> KeptFrame | None:

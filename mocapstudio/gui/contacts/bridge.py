@@ -24,6 +24,8 @@ class ContactsUi:
         Ids of the chosen contacts, the one chosen last at the end.
     held
         A contact as it looks while it is dragged, before it is let go.
+    along
+        Contacts that go with it, as they look meanwhile.
     snap
         Whether dragged targets snap.
     posing
@@ -34,6 +36,7 @@ class ContactsUi:
 
     chosen: tuple[str, ...] = ()
     held: Contact | None = None
+    along: tuple[Contact, ...] = ()
     snap: bool = True
     posing: bool = False
     unreached: tuple[Unreached, ...] = ()
@@ -90,8 +93,9 @@ class ContactsBridge(QObject):
         held = self._ui.held
         if held is None:
             return self.kept
-        others = tuple(one for one in self.kept if one.id != held.id)
-        return (*others, held)
+        moving = (*self._ui.along, held)
+        ids = {one.id for one in moving}
+        return (*(one for one in self.kept if one.id not in ids), *moving)
 
     @property
     def chosen(self) -> Contact | None:
@@ -103,7 +107,12 @@ class ContactsBridge(QObject):
         return next((one for one in self.contacts if one.id == contact_id), None)
 
     def set_ui(self, **changes: Any) -> None:
-        """Change fields of the transient state; equal values are not announced."""
+        """Change fields of the transient state; equal values are not announced.
+
+        What is held goes alone, unless it is said what goes along.
+        """
+        if "held" in changes:
+            changes.setdefault("along", ())
         old, new = self._ui, replace(self._ui, **changes)
         if new != old:
             self._ui = new

@@ -26,8 +26,8 @@ class Handles(Protocol):
     def places(self) -> tuple[Sequence[str], Array]:
         """Names and (N, 3) places of the handles, the most wanted first."""
 
-    def taken(self, name: str) -> bool:
-        """A handle was taken hold of; False refuses it."""
+    def taken(self, name: str, alone: bool) -> bool:
+        """A handle was taken hold of, `alone` where Ctrl was held; False refuses it."""
 
     def dragged(self, name: str, place: Array, lock: int | None, mouse: QPointF) -> None:
         """It was dragged to a place; `lock` is the axis (0..2) along which alone it may go."""
@@ -52,7 +52,8 @@ class _Held:
 class Dragging(QObject):
     """An event filter before the camera's: a press within 12 px of a handle drags it.
 
-    X, Y and Z lock an axis while the button is held, the same key frees it; Esc gives up.
+    With Ctrl it goes alone. X, Y and Z lock an axis while the button is held, the same key frees
+    it; Esc gives up.
 
     Parameters
     ----------
@@ -109,10 +110,11 @@ class Dragging(QObject):
         return False
 
     def _press(self, event: QMouseEvent) -> bool:
-        if event.button() != Qt.MouseButton.LeftButton or event.modifiers():
+        alone = event.modifiers() == Qt.KeyboardModifier.ControlModifier
+        if event.button() != Qt.MouseButton.LeftButton or (event.modifiers() and not alone):
             return self._held is not None
         name = self.handle_at(event.position())
-        if name is None or not self._handles.taken(name):
+        if name is None or not self._handles.taken(name, alone):
             return False
         names, places = self._handles.places()
         at = event.position()

@@ -20,7 +20,6 @@ from mocapstudio.gui.contacts.lane_drawing import kind_colour, kind_words
 from mocapstudio.gui.contacts.overlay3d import Mark, Overlay
 from mocapstudio.gui.contacts.posing import Posing
 from mocapstudio.gui.contacts.reading import Readings
-from mocapstudio.gui.contacts.targets import place_at
 from mocapstudio.gui.viewport.palette import rgb
 from mocapstudio.gui.viewport.world import StandIn, WorldMotion
 from mocapstudio.gui.views.viewport import Viewport
@@ -71,13 +70,13 @@ class ContactsStage(Viewport):
         here = self._here()
         return [one.id for one, _ in here], np.array([place for _, place in here]).reshape(-1, 3)
 
-    def taken(self, name: str) -> bool:
-        """Take hold of a target, or of a hand or foot."""
+    def taken(self, name: str, alone: bool) -> bool:
+        """Take hold of a target, `alone` or with what stands with it; or of a hand or foot."""
         self._said = ""
         if self._contacts.ui.posing:
             return self.posing.taken(name)
         self._contacts.choose(name)
-        return self.holding.taken(name)
+        return self.holding.taken(name, alone)
 
     def dragged(self, name: str, place: Array, lock: int | None, mouse: QPointF) -> None:
         """Bring what is held to a place."""
@@ -131,7 +130,7 @@ class ContactsStage(Viewport):
         for contact in self._contacts.contacts:
             mine = chosen is not None and contact.id == chosen.id
             if contact.id and (mine or contact.start <= frame < contact.end):
-                place = place_at(reading, contact, frame)
+                place = self.holding.place(contact, frame)
                 if place is not None:
                     found.append((contact, place))
         return sorted(found, key=lambda one: chosen is None or one[0].id != chosen.id)
@@ -160,6 +159,8 @@ class ContactsStage(Viewport):
         held = self._contacts.ui.held
         if held is not None and contact.id == held.id:
             point = self.bending.place_at(frame)
+        elif reading is not None and contact in self._contacts.ui.along:
+            point = self.bending.place_at(frame, reading.point(contact))
         if point is None and reading is not None and contact.start <= frame < contact.end:
             point = reading.place(contact, after=True)[frame - contact.start]
         colour = rgb(kind_colour(theme.current(), contact.target))
@@ -202,5 +203,10 @@ class ContactsStage(Viewport):
         self._canvas.setCursor(Qt.CursorShape.OpenHandCursor)
         words = name if contact is None else f"{contact.joint} {contact.point or ''}".strip()
         if contact is not None:
-            words += f" · {kind_words(contact.target)} · drag to move, X Y Z lock an axis"
+            words += f" · {kind_words(contact.target)} · {self._drag_words(contact)}"
         QToolTip.showText(self._canvas.mapToGlobal(at.toPoint()), words, self._canvas)
+
+    def _drag_words(self, contact: Contact) -> str:
+        alone = ", with Ctrl this point alone" if self.holding.company(contact) else ""
+        whole = "drag to move the foot" if alone else "drag to move"
+        return f"{whole}{alone}; X Y Z lock an axis"

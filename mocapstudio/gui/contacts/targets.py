@@ -44,7 +44,8 @@ def kind_of(target: Target) -> str:
 
 def place_at(reading: Reading, contact: Contact, frame: int) -> Array | None:
     """(3,) metres: where the target is at a frame (the nearest of the contact's); None if unmet."""
-    hold = reading.hold(contact)
+    # Where a floor is stood on, is told by the body as it is shown.
+    hold = reading.hold_after(contact) if reading.solved else reading.hold(contact)
     if hold is None:
         return None
     at = min(max(frame, contact.start), contact.end - 1) - contact.start
@@ -139,6 +140,26 @@ def moved(reading: Reading, contact: Contact, place: Array, frame: int, *, uprig
         way = rot.rotate(rot.conjugate(world[0, joint]), place - positions[0, joint])
         return replace(target, offset=triple(way))
     return Fixed(triple(place))
+
+
+def gone_along(reading: Reading, contact: Contact, way: Array, frame: int) -> Target:
+    """Bring a target as far as another one of the same foot went.
+
+    Parameters
+    ----------
+    way
+        (3,) metres in the world.
+    frame
+        At which the other one went that far.
+    """
+    target = contact.target
+    if isinstance(target, Floor):
+        return replace(target, height=target.height + float(way[1]))
+    at = min(max(frame, contact.start), contact.end - 1)
+    place = place_at(reading, contact, at)
+    if place is None:
+        return target
+    return moved(reading, contact, place + way, at, upright=False)
 
 
 def drawn_target(

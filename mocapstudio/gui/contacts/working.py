@@ -132,18 +132,21 @@ class Working(QObject):
     def meet(self, held: Contact, kept: KeptFrame | None) -> None:
         """Give a contact the target it was dragged to, and bend its limb to it: one step.
 
-        The rest of the body stays as it is, and so does the frame that was dragged.
+        What stands with it goes along. The rest of the body stays as it is, and so does the frame
+        that was dragged.
         """
         desk, reading = self._bridge.desk, self._readings.now
         document, performer = desk.document, desk.state.active
+        along = self._bridge.ui.along
+        targets = {one.id: one.target for one in (held, *along)}
 
         def there() -> bool:
             same = desk.document is document and desk.state.active == performer
-            return same and any(one.id == held.id for one in self._bridge.kept)
+            return same and targets.keys() <= {one.id for one in self._bridge.kept}
 
         def move_only() -> None:
             if there():
-                document.change_contact(held.id, "Move target", target=held.target)
+                document.move_targets(targets, ())
             self._bridge.set_ui(held=None)
 
         base = document.result(performer)
@@ -157,12 +160,12 @@ class Working(QObject):
                 return
             try:
                 proposals = as_proposals(result.take, result.declared)
-                document.move_target(held.id, held.target, proposals)
+                document.move_targets(targets, proposals)
             except MocapError as error:
                 move_only()
                 self._messages.complain(error, "The body cannot follow the target")
                 return
-            others = (one for one in self._bridge.ui.unreached if one.contact != held.id)
+            others = (one for one in self._bridge.ui.unreached if one.contact not in targets)
             self._bridge.set_ui(held=None, unreached=(*others, *result.unreached))
             for one in result.unreached:
                 self._messages.tell(
@@ -177,6 +180,7 @@ class Working(QObject):
             base,
             held,
             reading.points,
+            along=along,
             others=reading.others,
             ranges=reading.ranges,
             kept=kept,
