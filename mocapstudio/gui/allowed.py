@@ -42,6 +42,7 @@ def allowed(state: DocumentState) -> dict[str, bool]:
     }  # fmt: skip
     for k in range(6):
         found[f"neighbour-{k}"] = item is not None and item.flag.joint not in ROOT_ROWS
+    found["neighbour-alignment"] = item is not None and state.analysis is not None
     return found
 
 

@@ -83,6 +83,10 @@ NEIGHBOURS = (
     ),
     Command("neighbour-0", "Best &Proposal", "Go back to the proposal the analysis would choose",
             ("0",)),
+    SEPARATOR,
+    Command("neighbour-alignment", "Show the &Alignment…",
+            "Show how the previewed neighbour answers to the flagged span, pose by pose", ("X",),
+            "matrix"),
 )  # fmt: skip
 
 ANALYSIS = (

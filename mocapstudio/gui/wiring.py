@@ -79,6 +79,7 @@ def _wire_decisions(window: MainWindow) -> None:
     for k in range(1, 6):
         on(f"neighbour-{k}", partial(window.reasons.choose, k - 1))
     on("neighbour-0", partial(window.reasons.choose, None))
+    on("neighbour-alignment", partial(_show_alignment, window))
 
 
 def _wire_play(window: MainWindow) -> None:
@@ -168,6 +169,11 @@ def _set_mode(window: MainWindow, mode: str) -> None:
 def _show_edit(window: MainWindow, flag: str) -> None:
     window.actions_["view-inspector"].setChecked(True)
     window.workspace.inspector.show_edit(flag)
+
+
+def _show_alignment(window: MainWindow) -> None:
+    if not window.workspace.inspector.show_alignment():
+        window.messages.tell("No neighbour of this flag is known.")
 
 
 def _about(window: MainWindow) -> None:

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import mouse
 import pytest
+from hands import Hands
 from made_takes import turned, walking
 from PySide6.QtCore import QSize
 from PySide6.QtGui import QContextMenuEvent
@@ -98,3 +99,28 @@ def test_the_wheel_zooms_and_never_leaves_the_neighbour(dialog):
     assert near.length < whole.length
     mouse.wheel(plot, plot.area.center(), -40)
     assert plot.scales[0].stretch == whole
+
+
+def test_a_key_shows_the_neighbour_that_is_previewed(window, qtbot, analysis):
+    document = Document(author="tester")
+    performer = document.open_take(analysis.take)
+    assert document.finish_analysis(performer, document.begin_analysis(performer), analysis)
+    window.bridge.replace(document)
+    window.switching.show("review")
+    window.activateWindow()
+    user = Hands(window, qtbot)
+    user.see(window.isActiveWindow)
+    told = []
+    window.messages.told.connect(lambda text, _about: told.append(text))
+    document.clear_selection()
+    assert not window.actions_["neighbour-alignment"].isEnabled()
+    document.select_flag(FLAG.id)
+    user.press("X")
+    assert told == ["No neighbour of this flag is known."]
+    user.see(lambda: window.reasons.current.profile is not None, 60)
+    user.press("2")
+    user.press("X")
+    user.see(lambda: user.shows("neighbour-alignment"))
+    shown = user.find("neighbour-alignment")
+    assert shown.findChild(QComboBox, "alignment-neighbour").currentIndex() == 1
+    shown.close()

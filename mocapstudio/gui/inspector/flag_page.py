@@ -63,7 +63,7 @@ class FlagPage(QWidget):
         self._facts = {name: label("", "", f"inspector-{name}", wrap=True) for name in _FACTS}
         self._neighbours = NeighbourList()
         self._neighbours.chosen.connect(reasons.choose)
-        self._neighbours.alignment_wanted.connect(self._show_alignment)
+        self._neighbours.alignment_wanted.connect(self.show_alignment)
         self._stack = QStackedWidget()
         self._empty = QWidget()
         self._hint = Hint(self._empty, "inspector-hint")
@@ -166,26 +166,37 @@ class FlagPage(QWidget):
         times = [self._when(one) for one in near]
         choosable = item.flag.joint not in ROOT_ROWS
         self._neighbours.show_neighbours(near, times, note, choosable)
-        proposal = state.proposals.get(item.flag.id)
-        choice = self._bridge.ui.preview
-        if choice is None and proposal is not None and proposal.donor in near:
-            choice = near.index(proposal.donor)
-        self._neighbours.mark(choice)
+        self._neighbours.mark(self._previewed())
 
-    def _show_alignment(self, which: int) -> None:
+    def _previewed(self) -> int | None:
+        """Which of the neighbours is the proposal, if it is one of them."""
+        state, choice = self._bridge.state, self._bridge.ui.preview
+        item, near = state.selected, self._reasons.current.neighbours or ()
+        proposal = None if item is None else state.proposals.get(item.flag.id)
+        if choice is None and proposal is not None and proposal.donor in near:
+            return near.index(proposal.donor)
+        return choice
+
+    def show_alignment(self, which: int | None = None) -> bool:
+        """Show how a neighbour, 0-based, answers to the flagged span; False where none is known.
+
+        None is the one that is previewed, else the nearest.
+        """
         state, reason = self._bridge.state, self._reasons.current
         item, analysis = state.selected, state.analysis
-        if item is None or analysis is None or reason.profile is None:
-            return
+        near = reason.neighbours or ()
+        if item is None or analysis is None or reason.profile is None or not near:
+            return False
         # It brings compiled kernels along, which would hold up the first window.
         from mocapstudio.gui.dialogs.neighbour_alignment import NeighbourAlignmentDialog
 
-        near = reason.neighbours or ()
         dialog = NeighbourAlignmentDialog(
             self._bridge, analysis, item.flag, reason.profile, near, self.window()
         )
-        dialog.show_neighbour(which)
+        wanted = self._previewed() if which is None else which
+        dialog.show_neighbour(min(wanted or 0, len(near) - 1))
         dialog.show()
+        return True
 
     def _when(self, neighbour: Neighbour) -> str:
         analysis = self._bridge.state.analysis

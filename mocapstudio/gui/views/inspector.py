@@ -50,6 +50,10 @@ class InspectorView(QFrame):
         self._tabs.setCurrentWidget(self._edits)
         self._edits.reveal(flag_id)
 
+    def show_alignment(self) -> bool:
+        """Show how the previewed neighbour answers to the flag's span; False without one."""
+        return self._flag.show_alignment()
+
     def _show(self, old: DocumentState, new: DocumentState) -> None:
         count = sum(1 for one in new.sitting.edits if one.performer == new.active)
         self._tabs.setTabText(1, f"Edits ({count})" if count else "Edits")
