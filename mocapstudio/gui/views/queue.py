@@ -24,11 +24,11 @@ from mocapstudio.review.state import DocumentState
 
 _WIDTHS = {
     Column.RANK: 36,
-    Column.TIME: 74,
+    Column.TIME: 72,
     Column.FRAME: 46,
     Column.SCORE: 46,
     Column.KIND: 92,
-    Column.VERDICT: 88,
+    Column.VERDICT: 84,
 }
 _JOINT_WIDTH = 84
 _DISPENSABLE = (Column.FRAME, Column.KIND)
