@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QFrame, QLabel, QSplitter, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QStackedWidget, QVBoxLayout, QWidget
 
-from mocapstudio.gui import settings
 from mocapstudio.gui.actions import Actions
 from mocapstudio.gui.compare.bridge import CompareBridge
 from mocapstudio.gui.compare.live_bridge import LiveBridge
@@ -21,6 +19,7 @@ from mocapstudio.gui.compare.transport import CompareTransport
 from mocapstudio.gui.compare.weights_view import WeightsView
 from mocapstudio.gui.jobs import Jobs
 from mocapstudio.gui.widgets.parts import header, panel
+from mocapstudio.gui.widgets.splitters import Splitters, above
 
 
 class CompareDesk(QWidget):
@@ -64,8 +63,7 @@ class CompareDesk(QWidget):
         self._below.addWidget(self.multiples)
         self.live = LiveView(bridge, live, actions)
         self._below.addWidget(self.live)
-        self._columns = QSplitter(Qt.Orientation.Horizontal)
-        self._rows = QSplitter(Qt.Orientation.Vertical)
+        self._splitters = Splitters("compare-")
         self._shared_out = False
         self._lay_out(actions)
         bridge.ui_changed.connect(lambda _old, _new: self._show_parts())
@@ -78,12 +76,6 @@ class CompareDesk(QWidget):
         return self.multiples if self._bridge.ui.multiples else self.pictures
 
     def _lay_out(self, actions: Actions) -> None:
-        centre = QFrame()
-        column = QVBoxLayout(centre)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(0)
-        column.addWidget(self.stage, 1)
-        column.addWidget(self.transport)
         side = panel("compare-side")
         inner = QVBoxLayout(side)
         inner.setContentsMargins(0, 0, 0, 0)
@@ -94,19 +86,11 @@ class CompareDesk(QWidget):
         self._title = titles[0]
         inner.addWidget(head)
         inner.addWidget(self._side, 1)
-        for splitter, name in ((self._columns, "columns"), (self._rows, "rows")):
-            splitter.setObjectName(f"compare-{name}")
-            splitter.setHandleWidth(4)
-            splitter.setChildrenCollapsible(False)
-        for index, part in enumerate((self._left, centre, side)):
-            self._columns.addWidget(part)
-            self._columns.setStretchFactor(index, int(index == 1))
-        for index, row in enumerate((self._columns, self._below)):
-            self._rows.addWidget(row)
-            self._rows.setStretchFactor(index, 1)
+        centre = above(self.stage, self.transport)
+        self._splitters.fill(((self._left, 0), (centre, 1), (side, 0)), 1, ((self._below, 1),))
         whole = QVBoxLayout(self)
         whole.setContentsMargins(0, 0, 0, 0)
-        whole.addWidget(self._rows)
+        whole.addWidget(self._splitters.rows)
 
     def _show_parts(self) -> None:
         ui, live = self._bridge.ui, self._live.shown
@@ -125,23 +109,19 @@ class CompareDesk(QWidget):
         width, height = self.width(), self.height()
         left = min(max(round(0.21 * width), 262), 320)
         right = min(max(round(0.22 * width), 290), 360)
-        self._columns.setSizes([left, width - left - right, right])
-        self._rows.setSizes([round(0.47 * height), round(0.53 * height)])
+        self._splitters.columns.setSizes([left, width - left - right, right])
+        self._splitters.rows.setSizes([round(0.47 * height), round(0.53 * height)])
 
     def remember(self) -> None:
         """Remember sizes."""
-        settings.set_layout("compare-columns", self._columns.saveState())
-        settings.set_layout("compare-rows", self._rows.saveState())
+        self._splitters.remember()
 
     def restore(self) -> None:
         """Lay out as remembered, else as it comes."""
         if self._shared_out:
             return
         self.share_out()
-        for splitter, name in ((self._columns, "columns"), (self._rows, "rows")):
-            state = settings.layout(f"compare-{name}")
-            if state is not None:
-                splitter.restoreState(state)
+        self._splitters.restore()
 
     def restyle(self) -> None:
         """Take over the colours of the theme in force."""

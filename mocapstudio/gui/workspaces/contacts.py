@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QEvent, Qt
+from PySide6.QtCore import QEvent
 from PySide6.QtGui import QShowEvent
-from PySide6.QtWidgets import QFrame, QSplitter, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from mocapstudio.gui import settings
 from mocapstudio.gui.contacts.answering import Answering
 from mocapstudio.gui.contacts.bridge import ContactsBridge, ContactsUi
 from mocapstudio.gui.contacts.curves_view import CurvesView
@@ -23,6 +22,7 @@ from mocapstudio.gui.document import only_frame_differs
 from mocapstudio.gui.plots.time_range import TimeRange
 from mocapstudio.gui.views.transport import TransportView
 from mocapstudio.gui.widgets.native import alone
+from mocapstudio.gui.widgets.splitters import Splitters, above
 from mocapstudio.gui.workspaces.workspace import Answers, Workspace
 from mocapstudio.review.state import DocumentState
 
@@ -52,8 +52,7 @@ class ContactsWorkspace(Workspace):
         self.inspector = ContactInspector(self.bridge, self.readings, window.actions_)
         self.lanes = LanesView(self.bridge, self.readings, self.time_range)
         self.curves = CurvesView(self.bridge, self.readings, self.time_range)
-        self._columns = QSplitter(Qt.Orientation.Horizontal)
-        self._rows = QSplitter(Qt.Orientation.Vertical)
+        self._splitters = Splitters("contacts-")
         self._shared_out = self._restored = False
         self._lanes = 0
         self._lay_out()
@@ -91,15 +90,14 @@ class ContactsWorkspace(Workspace):
         """Share the room out as it comes."""
         width, height = self.width(), self.height()
         right = min(max(round(0.21 * width), 270), 340)
-        self._columns.setSizes([width - right, right])
+        self._splitters.columns.setSizes([width - right, right])
         lanes = min(self.lanes.full_height, round(0.3 * height))
         curves = min(max(round(0.19 * height), 120), 190)
-        self._rows.setSizes([height - lanes - curves, lanes, curves])
+        self._splitters.rows.setSizes([height - lanes - curves, lanes, curves])
 
     def remember(self) -> None:
         """Remember sizes."""
-        settings.set_layout("contacts-columns", self._columns.saveState())
-        settings.set_layout("contacts-rows", self._rows.saveState())
+        self._splitters.remember()
 
     def showEvent(self, event: QShowEvent) -> None:
         """Lay out as remembered, else as it comes."""
@@ -108,10 +106,7 @@ class ContactsWorkspace(Workspace):
             return
         self._shared_out = True
         self.share_out()
-        for splitter, name in ((self._columns, "columns"), (self._rows, "rows")):
-            state = settings.layout(f"contacts-{name}")
-            if state is not None:
-                self._restored |= splitter.restoreState(state)
+        self._restored = self._splitters.restore()
 
     def changeEvent(self, event: QEvent) -> None:
         """Follow the theme."""
@@ -121,27 +116,14 @@ class ContactsWorkspace(Workspace):
             self.curves.restyle()
 
     def _lay_out(self) -> None:
-        centre = QFrame()
-        column = QVBoxLayout(centre)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(0)
-        column.addWidget(self.stage, 1)
-        column.addWidget(self.transport)
-        for splitter, name in ((self._columns, "columns"), (self._rows, "rows")):
-            splitter.setObjectName(f"contacts-{name}")
-            splitter.setHandleWidth(4)
-            splitter.setChildrenCollapsible(False)
-        self._columns.addWidget(centre)
-        self._columns.addWidget(self.inspector)
-        for row in (self._columns, alone(self.lanes), alone(self.curves)):
-            self._rows.addWidget(row)
-        for index, stretch in enumerate((1, 0)):
-            self._columns.setStretchFactor(index, stretch)
-        for index, stretch in enumerate((1, 0, 0)):
-            self._rows.setStretchFactor(index, stretch)
+        self._splitters.fill(
+            ((above(self.stage, self.transport), 1), (self.inspector, 0)),
+            1,
+            ((alone(self.lanes), 0), (alone(self.curves), 0)),
+        )
         whole = QVBoxLayout(self)
         whole.setContentsMargins(0, 0, 0, 0)
-        whole.addWidget(self._rows)
+        whole.addWidget(self._splitters.rows)
 
     def _follow(self, old: DocumentState, new: DocumentState) -> None:
         self._tell(anyway=not only_frame_differs(old, new))

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QEvent, Qt
+from PySide6.QtCore import QEvent
 from PySide6.QtGui import QShowEvent
-from PySide6.QtWidgets import QFrame, QSplitter, QStackedLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QStackedLayout, QWidget
 
-from mocapstudio.gui import settings
 from mocapstudio.gui.markers.answering import Answering
 from mocapstudio.gui.markers.bridge import MarkersBridge, MarkersShown
 from mocapstudio.gui.markers.curves_view import CurvesView
@@ -24,6 +23,7 @@ from mocapstudio.gui.markers.transport import MarkersTransport
 from mocapstudio.gui.markers.working import Working
 from mocapstudio.gui.plots.time_range import TimeRange
 from mocapstudio.gui.widgets.native import alone
+from mocapstudio.gui.widgets.splitters import Splitters, above
 from mocapstudio.gui.workspaces.workspace import Answers, Workspace
 
 if TYPE_CHECKING:
@@ -59,8 +59,7 @@ class MarkersWorkspace(Workspace):
         self.answering = Answering(self, Filing(window, self.bridge, self.working))
         self._answered: tuple[object, ...] = ()
         self._empty = EmptyMarkers(actions)
-        self._columns = QSplitter(Qt.Orientation.Horizontal)
-        self._rows = QSplitter(Qt.Orientation.Vertical)
+        self._splitters = Splitters("markers-")
         self._shared_out = False
         self._stack = QStackedLayout(self)
         self._lay_out()
@@ -93,15 +92,14 @@ class MarkersWorkspace(Workspace):
         width, height = self.width(), self.height()
         left = min(max(round(0.24 * width), 310), 360)
         right = min(max(round(0.2 * width), 280), 310)
-        self._columns.setSizes([left, width - left - right, right])
+        self._splitters.columns.setSizes([left, width - left - right, right])
         lanes = min(max(round(0.27 * height), 150), 300)
         curves = min(max(round(0.19 * height), 110), 190)
-        self._rows.setSizes([height - lanes - curves, lanes, curves])
+        self._splitters.rows.setSizes([height - lanes - curves, lanes, curves])
 
     def remember(self) -> None:
         """Remember sizes."""
-        settings.set_layout("markers-columns", self._columns.saveState())
-        settings.set_layout("markers-rows", self._rows.saveState())
+        self._splitters.remember()
 
     def showEvent(self, event: QShowEvent) -> None:
         """Lay out as remembered, else as it comes."""
@@ -110,10 +108,7 @@ class MarkersWorkspace(Workspace):
             return
         self._shared_out = True
         self.share_out()
-        for splitter, name in ((self._columns, "columns"), (self._rows, "rows")):
-            state = settings.layout(f"markers-{name}")
-            if state is not None:
-                splitter.restoreState(state)
+        self._splitters.restore()
 
     def changeEvent(self, event: QEvent) -> None:
         """Follow the theme."""
@@ -123,24 +118,14 @@ class MarkersWorkspace(Workspace):
                 part.restyle()
 
     def _lay_out(self) -> None:
-        centre = QFrame()
-        column = QVBoxLayout(centre)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(0)
-        column.addWidget(self.stage, 1)
-        column.addWidget(self.transport)
-        for splitter, name in ((self._columns, "columns"), (self._rows, "rows")):
-            splitter.setObjectName(f"markers-{name}")
-            splitter.setHandleWidth(4)
-            splitter.setChildrenCollapsible(False)
-        for index, part in enumerate((self.table, centre, self.inspector)):
-            self._columns.addWidget(part)
-            self._columns.setStretchFactor(index, int(index == 1))
-        for index, row in enumerate((self._columns, alone(self.lanes), alone(self.curves))):
-            self._rows.addWidget(row)
-            self._rows.setStretchFactor(index, int(index == 0))
+        centre = above(self.stage, self.transport)
+        self._splitters.fill(
+            ((self.table, 0), (centre, 1), (self.inspector, 0)),
+            1,
+            ((alone(self.lanes), 0), (alone(self.curves), 0)),
+        )
         self._stack.addWidget(self._empty)
-        self._stack.addWidget(self._rows)
+        self._stack.addWidget(self._splitters.rows)
 
     def _follow(self, old: MarkersShown, new: MarkersShown) -> None:
         if old.result is not new.result:
@@ -152,4 +137,4 @@ class MarkersWorkspace(Workspace):
             self.answers_changed.emit()
 
     def _show(self, shown: MarkersShown) -> None:
-        self._stack.setCurrentWidget(self._empty if shown.result is None else self._rows)
+        self._stack.setCurrentWidget(self._empty if shown.result is None else self._splitters.rows)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import Qt, QTimer, Signal
+from PySide6.QtCore import QTimer, Signal
 from PySide6.QtGui import QShowEvent
-from PySide6.QtWidgets import QFrame, QSplitter, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from mocapstudio.gui import settings
 from mocapstudio.gui.actions import Actions
@@ -21,6 +21,7 @@ from mocapstudio.gui.views.transport import TransportView
 from mocapstudio.gui.widgets.page_tabs import Page, PageTabs
 from mocapstudio.gui.widgets.place import Place
 from mocapstudio.gui.widgets.rooms import Rooms
+from mocapstudio.gui.widgets.splitters import Splitters, above
 from mocapstudio.gui.workspaces.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -70,9 +71,8 @@ class ReviewWorkspace(Workspace):
         self.curves: CurvesView | None = None
         self.distances: DistancesView | None = None
         self._stage, self._map_place, self._curves_place = Place(), Place(), Place()
-        self._columns = QSplitter(Qt.Orientation.Horizontal)
-        self._rows = QSplitter(Qt.Orientation.Vertical)
-        self._rooms = Rooms(self._rows)
+        self._splitters = Splitters()
+        self._rooms = Rooms(self._splitters.rows)
         self._shared_out = False
         self._lay_out()
         self._parts = {
@@ -110,9 +110,9 @@ class ReviewWorkspace(Workspace):
         width, height = self.width(), self.height()
         queue = min(max(round(0.33 * width), 340), 480)
         inspector = min(max(round(0.24 * width), 310), 380)
-        self._columns.setSizes([queue, width - queue - inspector, inspector])
+        self._splitters.columns.setSizes([queue, width - queue - inspector, inspector])
         rows = [round(share * height) for share in (0.57, 0.25, 0.18)]
-        self._rows.setSizes(rows)
+        self._splitters.rows.setSizes(rows)
 
     def frame_joint(self) -> None:
         """Move the camera to the selected joint."""
@@ -131,44 +131,29 @@ class ReviewWorkspace(Workspace):
 
     def remember(self) -> None:
         """Remember sizes and what is shown."""
-        settings.set_layout("columns", self._columns.saveState())
-        settings.set_layout("rows", self._rows.saveState())
+        self._splitters.remember()
         hidden = [name for name in self._parts if not self._actions[name].isChecked()]
         settings.set_text("hidden", " ".join(hidden))
 
     def restore(self) -> None:
         """Lay out as remembered."""
-        for splitter, name in ((self._columns, "columns"), (self._rows, "rows")):
-            state = settings.layout(name)
-            if state is not None and splitter.restoreState(state):
-                self._shared_out = True
+        if self._splitters.restore():
+            self._shared_out = True
         for name in settings.text("hidden").split():
             if name in self._parts:
                 self._actions[name].setChecked(False)
 
     def _lay_out(self) -> None:
-        centre = QFrame()
+        centre = above(self._stage, self.transport)
         centre.setObjectName("centre")
-        column = QVBoxLayout(centre)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(0)
-        column.addWidget(self._stage, 1)
-        column.addWidget(self.transport)
-        for splitter, name in ((self._columns, "columns"), (self._rows, "rows")):
-            splitter.setObjectName(name)
-            splitter.setHandleWidth(4)
-            splitter.setChildrenCollapsible(False)
-        for part in (self.queue, centre, self.inspector):
-            self._columns.addWidget(part)
-        for row in (self._columns, self._map_place, self._curves_place):
-            self._rows.addWidget(row)
-        for index, stretch in enumerate((0, 1, 0)):
-            self._columns.setStretchFactor(index, stretch)
-        for index, stretch in enumerate((6, 3, 2)):
-            self._rows.setStretchFactor(index, stretch)
+        self._splitters.fill(
+            ((self.queue, 0), (centre, 1), (self.inspector, 0)),
+            6,
+            ((self._map_place, 3), (self._curves_place, 2)),
+        )
         whole = QVBoxLayout(self)
         whole.setContentsMargins(0, 0, 0, 0)
-        whole.addWidget(self._rows)
+        whole.addWidget(self._splitters.rows)
 
     def _fill_next(self) -> None:
         if self._to_fill:
