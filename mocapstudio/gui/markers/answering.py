@@ -89,6 +89,7 @@ class Answering(QObject):
 
     def _play(self) -> Slots:
         playback, bridge = self._workspace.playback, self._bridge
+        transport = self._workspace.transport
 
         def step(by: int) -> None:
             bridge.go(bridge.shown.frame + by)
@@ -102,7 +103,7 @@ class Answering(QObject):
             "frame-back": partial(step, -1), "frame-on": partial(step, 1),
             "ten-back": partial(step, -10), "ten-on": partial(step, 10),
             "first": partial(bridge.go, 0), "last": last,
-            "slower": partial(playback.step_speed, -1), "faster": partial(playback.step_speed, 1),
+            "slower": partial(transport.step_speed, -1), "faster": partial(transport.step_speed, 1),
         }  # fmt: skip
 
     def _views(self) -> Slots:

@@ -21,6 +21,7 @@ from mocapstudio.gui import theme
 from mocapstudio.gui.markers.bridge import MarkersBridge, MarkersShown
 from mocapstudio.gui.markers.chooser import TakeChooser
 from mocapstudio.gui.widgets.parts import header, label
+from mocapstudio.gui.widgets.tables import column_header
 from mocapstudio.review.marker_gaps import MarkerGaps
 
 Index = QModelIndex | QPersistentModelIndex
@@ -85,14 +86,7 @@ class GapModel(QAbstractTableModel):
         self, section: int, orientation: Qt.Orientation, role: int = Qt.ItemDataRole.DisplayRole
     ) -> Any:
         """Title and explanation of a column."""
-        if orientation is not Qt.Orientation.Horizontal:
-            return None
-        title, tip = _TITLES[Column(section)]
-        if role == Qt.ItemDataRole.DisplayRole:
-            return title
-        if role == Qt.ItemDataRole.ToolTipRole:
-            return tip
-        return _alignment(section) if role == Qt.ItemDataRole.TextAlignmentRole else None
+        return column_header(tuple(_TITLES.values()), Column.GAPS, section, orientation, role)
 
     def data(self, index: Index, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
         """Text, colour and so on of one cell."""

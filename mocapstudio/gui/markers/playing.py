@@ -8,7 +8,7 @@ from collections.abc import Callable
 from PySide6.QtCore import QObject, Qt, QTimer
 
 from mocapstudio.gui.markers.bridge import MarkersBridge, MarkersShown
-from mocapstudio.gui.playback import MARGIN, SPEEDS
+from mocapstudio.gui.playback import MARGIN
 
 _EVERY_MS = 16
 
@@ -57,11 +57,6 @@ class MarkersPlayback(QObject):
         self._bridge.set(loop=looping, playing=False)
         if looping:
             self.toggle()
-
-    def step_speed(self, by: int) -> None:
-        """Play slower or faster."""
-        at = SPEEDS.index(self._bridge.shown.speed) + by
-        self._bridge.set(speed=SPEEDS[min(max(at, 0), len(SPEEDS) - 1)])
 
     def tick(self) -> None:
         """Show the frame of now."""

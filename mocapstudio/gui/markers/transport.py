@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from PySide6.QtWidgets import QFrame, QHBoxLayout
-
-from mocapstudio.gui import wording
 from mocapstudio.gui.actions import Actions
 from mocapstudio.gui.markers.bridge import MarkersBridge, MarkersShown
-from mocapstudio.gui.widgets.frame_field import FrameField
-from mocapstudio.gui.widgets.parts import label
-from mocapstudio.gui.widgets.speeds import SpeedButtons
+from mocapstudio.gui.widgets.speeds import next_speed
+from mocapstudio.gui.widgets.transport_bar import TransportBar
 
 
-class MarkersTransport(QFrame):
+class MarkersTransport(TransportBar):
     """The bar below the viewport.
 
     Parameters
@@ -24,44 +20,15 @@ class MarkersTransport(QFrame):
     """
 
     def __init__(self, bridge: MarkersBridge, actions: Actions) -> None:
-        super().__init__()
-        self.setObjectName("markers-transport")
-        self.setProperty("role", "panel")
-        self.setFixedHeight(40)
+        super().__init__(actions, bridge.go, lambda speed: bridge.set(speed=speed), "markers-")
         self._bridge = bridge
-        self._frame = FrameField("markers-frame")
-        self._frame.wanted.connect(bridge.go)
-        self._time = label("", "readout", "markers-time")
-        self._time.setMinimumWidth(64)
-        self._time.setToolTip("Time since the take's first frame, seconds")
-        self._length = label("", "muted")
-        self._speeds = SpeedButtons("markers-speed")
-        self._speeds.chosen.connect(lambda speed: bridge.set(speed=speed))
-        row = QHBoxLayout(self)
-        row.setContentsMargins(10, 4, 10, 4)
-        row.setSpacing(3)
-        row.addStretch(1)
-        for name in ("first", "frame-back", "play", "frame-on", "last"):
-            row.addWidget(actions.tool_button(name))
-        row.addSpacing(8)
-        row.addWidget(label("Frame", "muted"))
-        row.addSpacing(3)
-        row.addWidget(self._frame)
-        row.addSpacing(4)
-        row.addWidget(self._time)
-        row.addWidget(self._length)
-        row.addStretch(1)
-        row.addWidget(self._speeds)
-        row.addSpacing(4)
-        row.addWidget(actions.tool_button("loop"))
         bridge.changed.connect(lambda _old, new: self._show(new))
         self._show(bridge.shown)
 
+    def step_speed(self, by: int) -> None:
+        """Play slower or faster."""
+        self._bridge.set(speed=next_speed(self._bridge.shown.speed, by))
+
     def _show(self, new: MarkersShown) -> None:
-        take = new.result
-        self.setEnabled(take is not None)
-        self._frame.show_frame(take, new.frame)
-        self._speeds.show_speed(new.speed)
-        if take is not None:
-            self._time.setText(wording.seconds(take, new.frame))
-            self._length.setText(f"of {wording.seconds(take, take.frames)}")
+        self.show_frame(new.result, new.frame)
+        self.show_speed(new.speed)
