@@ -19,10 +19,11 @@ from mocapstudio.review.analyses import Analyses
 from mocapstudio.review.announcer import Announcer
 from mocapstudio.review.decisions import Stamp
 from mocapstudio.review.history import History, same
-from mocapstudio.review.marker_replay import MarkerResults
+from mocapstudio.review.marker_replay import replay_markers
 from mocapstudio.review.model import QueueItem, Sitting
 from mocapstudio.review.queue import Queue
 from mocapstudio.review.recorder import Nobody, Recorder
+from mocapstudio.review.remembered import Remembered
 from mocapstudio.review.replay import Results
 from mocapstudio.review.state import DocumentState, differing
 from mocapstudio.review.take_record import TakeRecord
@@ -54,7 +55,8 @@ class Core:
         self._group: tuple[str, str, History] | None = None
         self._analyses = Analyses()
         self._sources, self._results, self._uncorrected = Results(), Results(), Results()
-        self._marker_results, self._unfilled = MarkerResults(), MarkerResults()
+        self._marker_results = Remembered(replay_markers)
+        self._unfilled = Remembered(replay_markers)
         self._points_of: dict[str, tuple[Take, tuple[ContactPoint, ...]]] = {}
         self._context: tuple[Take, ...] = ()
         self._queue_of: tuple[str, object, object, tuple[QueueItem, ...]] = ("", (), (), ())

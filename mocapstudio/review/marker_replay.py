@@ -59,29 +59,6 @@ def marker_declared(edits: Iterable[MarkerEdit]) -> tuple[Declared, ...]:
     )
 
 
-class MarkerResults:
-    """Results of replay, one remembered for each performer and recognised by identity."""
-
-    def __init__(self) -> None:
-        self._known: dict[str, tuple[MarkerTake, tuple[MarkerEdit, ...], MarkerTake]] = {}
-
-    def of(self, performer: str, take: MarkerTake, edits: Iterable[MarkerEdit]) -> MarkerTake:
-        """Return the replayed take; the same object while nothing changes."""
-        in_force = tuple(edit for edit in edits if not edit.muted)
-        source, known, result = self._known.get(performer, (None, (), take))
-        alike = len(known) == len(in_force) and all(
-            a is b for a, b in zip(known, in_force, strict=True)
-        )
-        if source is not take or not alike:
-            result = replay_markers(take, in_force)
-            self._known[performer] = (take, in_force, result)
-        return result
-
-    def forget(self, performer: str) -> None:
-        """Let go of one performer's result."""
-        self._known.pop(performer, None)
-
-
 def _fill(edit: MarkerEdit, positions: Array, filled: Mask, at: NDArray[np.intp]) -> None:
     assert edit.positions is not None
     missing: Mask = np.asarray(np.isnan(positions[:, at]).any(axis=2))

@@ -9,6 +9,7 @@ from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.facing import carrier
 from mocapstudio.motion.take import Take
 from mocapstudio.review.model import Edit
+from mocapstudio.review.remembered import Remembered
 from mocapstudio.review.rows import union
 
 
@@ -54,27 +55,24 @@ def declared(edits: Iterable[Edit]) -> tuple[Declared, ...]:
 
 
 class Results:
-    """Results of replay, one remembered for each performer and recognised by identity."""
+    """Results of replay with their trims, one remembered for each performer."""
 
     def __init__(self) -> None:
-        self._known: dict[str, tuple[Take, tuple[Edit, ...], Take]] = {}
+        self._replayed: Remembered[Take, Edit] = Remembered(replay)
+        self._trimmed: dict[str, tuple[Take, Take]] = {}
 
     def of(
         self, performer: str, take: Take, edits: Iterable[Edit], trim: tuple[int, int] | None
     ) -> Take:
         """Return the replayed take with its trim; the same object while nothing changes."""
-        in_force = tuple(edit for edit in edits if not edit.muted)
-        source, known, result = self._known.get(performer, (None, (), take))
-        alike = len(known) == len(in_force) and all(
-            a is b for a, b in zip(known, in_force, strict=True)
-        )
-        if source is not take or not alike:
-            result = replay(take, in_force)
-        if result.trim != trim:
-            result = replace(result, trim=trim)
-        self._known[performer] = (take, in_force, result)
+        whole = self._replayed.of(performer, take, edits)
+        known, result = self._trimmed.get(performer, (None, whole))
+        if known is not whole or result.trim != trim:
+            result = whole if whole.trim == trim else replace(whole, trim=trim)
+            self._trimmed[performer] = whole, result
         return result
 
     def forget(self, performer: str) -> None:
         """Let go of one performer's result."""
-        self._known.pop(performer, None)
+        self._replayed.forget(performer)
+        self._trimmed.pop(performer, None)
