@@ -42,51 +42,60 @@ class Size(StrEnum):
     LARGE = "large"
 
 
+DataPaths = Annotated[
+    list[Path], typer.Option("--data", metavar="PATH", help="Takes or folders; repeatable.")
+]
+Truth = Annotated[
+    Path | None,
+    typer.Option(
+        "--truth",
+        metavar="FILE",
+        help="Score against labels made by hand (JSON); of contacts also a folder of them.",
+    ),
+]
+Cleaned = Annotated[
+    Path | None,
+    typer.Option("--cleaned", metavar="TAKE", help="Score against a version cleaned by hand."),
+]
+Labels = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--labels",
+        metavar="PATH",
+        help="Of alignment: segments of takes, a JSON file or a folder of them; repeatable.",
+    ),
+]
+Events = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--events",
+        metavar="PATH",
+        help="Of alignment: segments of the same movement by different performers, of which"
+        " every two are compared, a JSON file or a folder of them; repeatable.",
+    ),
+]
+Sizes = Annotated[
+    list[Size] | None,
+    typer.Option("--context", help="Size of context; repeatable. All three by default."),
+]
+Page = Annotated[
+    Path | None, typer.Option("--html", metavar="PATH", help="Write a page with pictures.")
+]
+
+
 def evaluate(
     what: Annotated[What, typer.Argument(help="What to measure.")],
-    data: Annotated[
-        list[Path], typer.Option("--data", metavar="PATH", help="Takes or folders; repeatable.")
-    ],
-    truth: Annotated[
-        Path | None,
-        typer.Option(
-            "--truth",
-            metavar="FILE",
-            help="Score against labels made by hand (JSON); of contacts also a folder of them.",
-        ),
-    ] = None,
-    cleaned: Annotated[
-        Path | None,
-        typer.Option("--cleaned", metavar="TAKE", help="Score against a version cleaned by hand."),
-    ] = None,
-    labels: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--labels",
-            metavar="PATH",
-            help="Of alignment: segments of takes, a JSON file or a folder of them; repeatable.",
-        ),
-    ] = None,
-    events: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--events",
-            metavar="PATH",
-            help="Of alignment: segments of the same movement by different performers, of which"
-            " every two are compared, a JSON file or a folder of them; repeatable.",
-        ),
-    ] = None,
-    context: Annotated[
-        list[Size] | None,
-        typer.Option("--context", help="Size of context; repeatable. All three by default."),
-    ] = None,
+    data: DataPaths,
+    truth: Truth = None,
+    cleaned: Cleaned = None,
+    labels: Labels = None,
+    events: Events = None,
+    context: Sizes = None,
     seed: Annotated[int, typer.Option(help="Of split, choice of takes and errors.", min=0)] = 0,
     limit: Annotated[int, typer.Option(help="Cases a row.", min=1)] = 12,
     brief: Annotated[bool, typer.Option("--brief", help="Only the main tables.")] = False,
     json_path: JsonPath = None,
-    html_path: Annotated[
-        Path | None, typer.Option("--html", metavar="PATH", help="Write a page with pictures.")
-    ] = None,
+    html_path: Page = None,
 ) -> None:
     """Measure detection, repair, contacts, alignment or speed on your own takes.
 

@@ -29,44 +29,12 @@ def share_curves(
     methods
         All methods in their order, which tells a line's colour.
     """
-    lowest = min(float(curve.min()) for curve in curves.values())
-    # Lines at whole percents, between three and six of them.
-    step = next(size for size in _STEPS if 1 - lowest <= 6 * size)
-    count = max(3, math.ceil((1 - lowest) / step - 1e-9))
-    low = 1 - count * step
-    wide, high = _WIDTH - _LEFT - _RIGHT, _HEIGHT - _TOP - _BOTTOM - _LINE * len(curves)
-
-    def x(share: float) -> float:
-        return _LEFT + share * wide
-
-    def y(quality: float) -> float:
-        return _TOP + (1 - (quality - low) / (1 - low)) * high
-
-    parts = [f'<text class="name" x="{_LEFT}" y="14">{html.escape(title)}</text>']
-    for i in range(count + 1):
-        quality = low + i * step
-        parts.append(
-            f'<path class="axis" fill="none" d="M{_LEFT},{y(quality):.1f}h{wide}"/>'
-            f'<text x="{_LEFT - 6}" y="{y(quality) + 4:.1f}" text-anchor="end">'
-            f"{100 * quality:.0f}</text>"
-        )
-    parts += [
-        f'<path class="axis" fill="none" d="M{x(share):.1f},{_TOP}v{high}"/>'
-        f'<text x="{x(share):.1f}" y="{_TOP + high + 15}" text-anchor="middle">'
-        f"{100 * share:.0f} %</text>"
-        for share in (0.2, 0.4, 0.6, 0.8, 1.0)
-    ]
-    middle = _TOP + high / 2
-    parts += [
-        f'<text x="{x(0.5):.1f}" y="{_TOP + high + 31:.1f}" text-anchor="middle">'
-        "share of the movement seen</text>",
-        f'<text x="12" y="{middle:.1f}" text-anchor="middle"'
-        f' transform="rotate(-90 12 {middle:.1f})">quality in %</text>',
-    ]
+    panel = _Panel(min(float(curve.min()) for curve in curves.values()), len(curves))
+    parts = [f'<text class="name" x="{_LEFT}" y="14">{html.escape(title)}</text>', *panel.grid()]
     for i, (name, curve) in enumerate(curves.items()):
         colour = _COLOURS[methods.index(name) % len(_COLOURS)]
         points = " ".join(
-            f"{x(share):.1f},{y(float(value)):.1f}"
+            f"{panel.x(share):.1f},{panel.y(float(value)):.1f}"
             for share, value in zip(shares, curve, strict=True)
         )
         line = _HEIGHT - 6 - _LINE * (len(curves) - 1 - i)
@@ -80,3 +48,45 @@ def share_curves(
         f'<figure><svg viewBox="0 0 {_WIDTH} {_HEIGHT}" width="{_WIDTH}" height="{_HEIGHT}">'
         f"{''.join(parts)}</svg></figure>"
     )
+
+
+class _Panel:
+    """Where shares and qualities lie, from just below the lowest quality up to 1."""
+
+    def __init__(self, lowest: float, curves: int) -> None:
+        # Lines at whole percents, between three and six of them.
+        self._step = next(size for size in _STEPS if 1 - lowest <= 6 * size)
+        self._count = max(3, math.ceil((1 - lowest) / self._step - 1e-9))
+        self._low = 1 - self._count * self._step
+        self._wide = _WIDTH - _LEFT - _RIGHT
+        self._high = _HEIGHT - _TOP - _BOTTOM - _LINE * curves
+
+    def x(self, share: float) -> float:
+        return _LEFT + share * self._wide
+
+    def y(self, quality: float) -> float:
+        return _TOP + (1 - (quality - self._low) / (1 - self._low)) * self._high
+
+    def grid(self) -> list[str]:
+        parts = []
+        for i in range(self._count + 1):
+            quality = self._low + i * self._step
+            parts.append(
+                f'<path class="axis" fill="none" d="M{_LEFT},{self.y(quality):.1f}h{self._wide}"/>'
+                f'<text x="{_LEFT - 6}" y="{self.y(quality) + 4:.1f}" text-anchor="end">'
+                f"{100 * quality:.0f}</text>"
+            )
+        parts += [
+            f'<path class="axis" fill="none" d="M{self.x(share):.1f},{_TOP}v{self._high}"/>'
+            f'<text x="{self.x(share):.1f}" y="{_TOP + self._high + 15}" text-anchor="middle">'
+            f"{100 * share:.0f} %</text>"
+            for share in (0.2, 0.4, 0.6, 0.8, 1.0)
+        ]
+        middle = _TOP + self._high / 2
+        return [
+            *parts,
+            f'<text x="{self.x(0.5):.1f}" y="{_TOP + self._high + 31:.1f}" text-anchor="middle">'
+            "share of the movement seen</text>",
+            f'<text x="12" y="{middle:.1f}" text-anchor="middle"'
+            f' transform="rotate(-90 12 {middle:.1f})">quality in %</text>',
+        ]
