@@ -28,6 +28,11 @@ _INF = np.float32(np.inf)
 
 
 @nb.njit(nogil=True, cache=True, fastmath=True)
+def _squares(w: np.float32, x: np.float32, y: np.float32, z: np.float32) -> np.float32:
+    return w * w + x * x + y * y + z * z
+
+
+@nb.njit(nogil=True, cache=True, fastmath=True)
 def distances(reference: F32, source: F32, out: F32) -> None:
     """Euclidean distances between poses, four reference frames at a time.
 
@@ -64,30 +69,10 @@ def distances(reference: F32, source: F32, out: F32) -> None:
                 for j in range(CHUNK):
                     p, q = chunk[d, j], chunk[d + 1, j]
                     r, s = chunk[d + 2, j], chunk[d + 3, j]
-                    total[0, j] += (
-                        (w0 - p) * (w0 - p)
-                        + (x0 - q) * (x0 - q)
-                        + (y0 - r) * (y0 - r)
-                        + (z0 - s) * (z0 - s)
-                    )
-                    total[1, j] += (
-                        (w1 - p) * (w1 - p)
-                        + (x1 - q) * (x1 - q)
-                        + (y1 - r) * (y1 - r)
-                        + (z1 - s) * (z1 - s)
-                    )
-                    total[2, j] += (
-                        (w2 - p) * (w2 - p)
-                        + (x2 - q) * (x2 - q)
-                        + (y2 - r) * (y2 - r)
-                        + (z2 - s) * (z2 - s)
-                    )
-                    total[3, j] += (
-                        (w3 - p) * (w3 - p)
-                        + (x3 - q) * (x3 - q)
-                        + (y3 - r) * (y3 - r)
-                        + (z3 - s) * (z3 - s)
-                    )
+                    total[0, j] += _squares(w0 - p, x0 - q, y0 - r, z0 - s)
+                    total[1, j] += _squares(w1 - p, x1 - q, y1 - r, z1 - s)
+                    total[2, j] += _squares(w2 - p, x2 - q, y2 - r, z2 - s)
+                    total[3, j] += _squares(w3 - p, x3 - q, y3 - r, z3 - s)
             for j in range(width):
                 out[i, start + j] = np.sqrt(total[0, j])
                 out[i1, start + j] = np.sqrt(total[1, j])
