@@ -184,7 +184,10 @@ class BoneDirections:
         return poses
 
     def start(self, pose: F32) -> F32 | None:
-        """Turn about the vertical that brings `pose` closest to the reference's first pose."""
+        """Turn about the vertical that brings `pose` closest to the reference's first pose.
+
+        See `Features.start`.
+        """
         seen = ~np.isnan(pose[:, 0])
         if seen.sum() < _SEEN * len(seen):
             return None
@@ -243,7 +246,13 @@ def _rigid_pairs(take: MarkerTake, kept: list[int]) -> list[tuple[int, int]]:
 
 
 def completed(poses: F32) -> F32:
-    """Bridge gaps of each row linearly, and hold its ends."""
+    """Bridge gaps of each row of poses (F, D, 4) linearly, and hold its ends.
+
+    Raises
+    ------
+    MocapError
+        If a row is never seen.
+    """
     if not np.isnan(poses).any():
         return poses
     filled, frames = poses.copy(), np.arange(len(poses))

@@ -53,7 +53,7 @@ OF_MOTION = (Kernel(0.2), Kernel(0.4, True, 0.0))
 
 
 def weights(kernel: Kernel, known: F64, wanted: F64) -> F64:
-    """(n, k) weights of the residuals at `known` seconds for those at `wanted` seconds."""
+    """(n, k) weights of residuals at `known` (k,) for those at `wanted` (n,), both in seconds."""
     among = kernel(known[:, None] - known) + _NUGGET * np.eye(len(known))
     across = kernel(wanted[:, None] - known)
     return np.asarray(np.linalg.solve(among, across.T).T)
@@ -70,7 +70,10 @@ def flanks(usable: Mask, start: int, end: int, rate: float) -> NDArray[np.int64]
 def led_across(
     residuals: F64, usable: Mask, start: int, end: int, rate: float, kernel: Kernel
 ) -> F64:
-    """(n, ...) residual inside [start, end), from the usable frames of both flanks."""
+    """(n, ...) residual inside [start, end), from the `usable` (F,) frames of both flanks.
+
+    `residuals` are (F, ...), known where usable.
+    """
     at = flanks(usable, start, end, rate)
     if not len(at):
         return np.zeros((end - start, *residuals.shape[1:]))

@@ -41,7 +41,7 @@ class Attachment:
     spreads: Array
 
     def with_marker(self, marker: int, joint: int, offset: Array) -> Attachment:
-        """Add a marker whose place was measured, not known."""
+        """Add a marker at `offset` (3,), a place on its joint that was measured, not known."""
         return Attachment(
             np.append(self.markers, marker),
             np.append(self.joints, joint),

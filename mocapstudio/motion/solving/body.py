@@ -115,7 +115,10 @@ class Body:
         return rot.to_matrix(self.template.usual)
 
     def with_offsets(self, offsets: Array, scales: Array) -> Body:
-        """Move markers on their joints and give bones other lengths."""
+        """Move markers on their joints to `offsets` (M, 3) and give bones other lengths.
+
+        `scales` (J,) are shares of the template's bones.
+        """
         attachment = replace(self.attachment, offsets=offsets)
         return Body(self.template, attachment, scales)
 

@@ -159,7 +159,7 @@ def borders(columns: int, ends: Ends) -> tuple[float, F32, float]:
 
 
 def last_cell(last_row: F32, last_column: F32, ends: Ends) -> tuple[int, int]:
-    """Return the cell where the cheapest path ends, from the last row and column of M."""
+    """Return the cell where the cheapest path ends, from the last row (S,) and column (R,) of M."""
     row, column = len(last_column) - 1, len(last_row) - 1
     if ends.end == "reference":
         return int(np.argmin(last_column)), column
