@@ -18,9 +18,10 @@ from mocapstudio.cleaning.contacts.model import Contact, ContactPoint
 from mocapstudio.cleaning.ik import windows
 from mocapstudio.cleaning.ik.agreement import agreed
 from mocapstudio.cleaning.ik.apply import Departure, declared_changes, with_departures
+from mocapstudio.cleaning.ik.priority import reachable
 from mocapstudio.cleaning.ik.ranges import JointRanges, joint_ranges
 from mocapstudio.cleaning.ik.slide import Slide, places, slide
-from mocapstudio.cleaning.ik.solve import solve
+from mocapstudio.cleaning.ik.solve import Problem, solve
 from mocapstudio.cleaning.ik.targets import Hold, chosen_again, holds
 from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.parameters import bounded
@@ -158,18 +159,25 @@ def _solve_window(
     parameters: SkateParameters,
 ) -> tuple[Departure, Sequence[Hold]]:
     start: Array | None = None
-    for weight in windows.CONTACT_WEIGHTS:
+
+    def solved(wanted: Sequence[Hold], weight: float) -> tuple[Problem, Array, list[Array]]:
         problem = windows.problem(
-            take, inside, span, ranges, parameters.easing, parameters.root_reach, weight
+            take, wanted, span, ranges, parameters.easing, parameters.root_reach, weight
         )
-        solution = solve(problem, start, tolerance=windows.TOLERANCE, smallest=windows.SMALLEST)
-        start = solution.unknowns
-        if weight < windows.CONTACT_WEIGHTS[-1]:
-            posed = problem.posed(start)
-            reached = [posed.point(h.joint, h.offset, h.frames - span[0]) for h in inside]
-            inside = [chosen_again(h, place) for h, place in zip(inside, reached, strict=True)]
-            inside = agreed(take, inside)
-    return Departure(span, problem, solution.unknowns), inside
+        found = solve(problem, start, tolerance=windows.TOLERANCE, smallest=windows.SMALLEST)
+        posed = problem.posed(found.unknowns)
+        places = [posed.point(h.joint, h.offset, h.frames - span[0]) for h in wanted]
+        return problem, found.unknowns, places
+
+    low, high = windows.CONTACT_WEIGHTS
+    _, start, reached = solved(inside, low)
+    inside = [chosen_again(h, place) for h, place in zip(inside, reached, strict=True)]
+    inside = agreed(take, inside)
+    problem, start, reached = solved(inside, high)
+    nearer = reachable(take.skeleton, inside, reached)
+    if nearer is not None:
+        problem, start, _ = solved(nearer, high)
+    return Departure(span, problem, start), inside
 
 
 def unreached(cleaned: Take, laid: Sequence[Hold]) -> Iterable[Unreached]:

@@ -15,6 +15,7 @@ from mocapstudio.cleaning.ik.objectives.over_time import KeepPose, Smoothness
 from mocapstudio.cleaning.ik.objectives.position import PointAtTarget
 from mocapstudio.cleaning.ik.objectives.rows import Objective
 from mocapstudio.cleaning.ik.posed import Posed, window
+from mocapstudio.cleaning.ik.priority import weights
 from mocapstudio.cleaning.ik.ranges import JointRanges
 from mocapstudio.cleaning.ik.solve import Problem
 from mocapstudio.cleaning.ik.targets import Hold
@@ -73,7 +74,7 @@ def problem(
 ) -> Problem:
     """State what is wanted of one window: contacts met, the rest as it was.
 
-    `weight` is that of contacts, per metre.
+    `weight` is that of contacts, per metre; hands give way to feet.
     """
     start, end = span
     ends = sorted({h.joint for h in holds})
@@ -82,8 +83,8 @@ def problem(
     view = window(take, start, end, [*ends, *joints])
     asis = Posed(view, free, np.zeros((end - start, free.size)))
     wishes: list[Objective] = [
-        PointAtTarget(h.joint, h.offset, h.frames - start, h.target, weight, h.projection)
-        for h in holds
+        PointAtTarget(h.joint, h.offset, h.frames - start, h.target, weight * share, h.projection)
+        for h, share in zip(holds, weights(take.skeleton, holds), strict=True)
     ]
     every = np.arange(end - start)
     wishes += [

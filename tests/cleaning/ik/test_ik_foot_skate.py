@@ -276,3 +276,30 @@ def test_no_contacts_change_nothing(walk):
 def test_bad_contacts_are_told(walk, bad, message):
     with pytest.raises(MocapError, match=message):
         clean(walk, bad)
+
+
+@pytest.mark.parametrize("metres", [0.3, 5.0])
+def test_what_a_hand_cannot_reach_pulls_no_foot_off_the_floor(walk, metres):
+    palm = ContactPoint("LeftHand", "palm", np.array([0.0, 0.0, 0.0]))
+    points = (*POINTS, palm)
+    feet = [
+        contact(point, 40, 100, Floor(float(place(walk, point)[:, 1].mean())), point.joint)
+        for point in POINTS
+    ]
+    alone = clean(walk, *feet, points=points)
+    assert alone.unreached == ()
+    # Straight up: the legs are stretched before the hips have gone as far as they may.
+    shoulder = take_pose(walk)[0][70, walk.skeleton.index["LeftArm"]]
+    spot = shoulder + np.array([0.0, 0.55 + metres, 0.0])
+    hand = contact(palm, 60, 80, Fixed(tuple(spot)), "far")
+    result = clean(walk, *feet, hand, points=points)
+    (missed,) = result.unreached
+    assert missed.contact == "far"
+    away = np.linalg.norm(place(result.take, palm)[60:80] - spot, axis=1)
+    assert missed.millimetres == pytest.approx(1e3 * away.max(), rel=1e-6)
+    for point, one in zip(POINTS, feet, strict=True):
+        stood = place(result.take, point)[40:100]
+        assert np.abs(stood - np.median(stood, axis=0)).max() < 5e-4
+        assert abs(stood[:, 1].mean() - one.target.height) < 5e-4
+    # The body leans for it as far as it can: nearer than an arm alone would get.
+    assert result.moved > 0.02
