@@ -112,10 +112,8 @@ class StageScene:
         """Lay the floor under (N, 3) places of performers of about `size` metres."""
         self.step = floor.spacing(size)
         flat = path[:, [0, 2]].astype(np.float64)
-        low = np.floor(flat.min(axis=0) / self.step) * self.step
-        high = np.ceil(flat.max(axis=0) / self.step) * self.step
+        low, high, self._radius = floor.extent(flat, self.step)
         self._level = level
-        self._radius = float(np.linalg.norm(high - low)) + 10 * self.step
         self._floor.lay(low, high, level, self.step, palette.floor)
 
     def show(self, poses: Sequence[Pose], camera: Turntable, pixel: float) -> None:

@@ -18,6 +18,23 @@ def spacing(stature: float) -> float:
     return float(10.0 ** round(math.log10(stature / 1.7)))
 
 
+def extent(
+    path: NDArray[np.float64], step: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+    """Lowest and highest corner (x, z) of the ground under (N, 2) places, and how far one sees.
+
+    Corners lie on lines of the grid, so that an edit of the hips does not move the floor.
+
+    Parameters
+    ----------
+    step
+        Metres between lines.
+    """
+    low = np.floor(path.min(axis=0) / step) * step
+    high = np.ceil(path.max(axis=0) / step) * step
+    return low, high, float(np.linalg.norm(high - low)) + 10 * step
+
+
 class Floor:
     """Grid lines in one unlit mesh, brightest near the performers."""
 

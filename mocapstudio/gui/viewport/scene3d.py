@@ -118,10 +118,7 @@ class Scene3D:
         self.step = floor.spacing(self.stature)
         self.level = floor_level(first, self.stature)
         paths = np.concatenate([motion.hips_path for motion in shown])[:, [0, 2]]
-        # In whole steps, so that an edit of the hips does not move the floor.
-        low = np.floor(paths.min(axis=0) / self.step) * self.step
-        high = np.ceil(paths.max(axis=0) / self.step) * self.step
-        self._radius = float(np.linalg.norm(high - low)) + 10 * self.step
+        low, high, self._radius = floor.extent(paths, self.step)
         self._floor.lay(low, high, self.level, self.step, palette.floor)
 
     def place(self, look: Look, camera: Turntable) -> None:
