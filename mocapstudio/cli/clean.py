@@ -18,7 +18,6 @@ from mocapstudio.motion.errors import MocapError
 
 if TYPE_CHECKING:
     from mocapstudio.cleaning.analysis import Analysis
-    from mocapstudio.cleaning.model import Flag
     from mocapstudio.cli.contact_files import Touching
     from mocapstudio.motion.take import Take
     from mocapstudio.review.document import Document
@@ -58,7 +57,7 @@ def clean(
 
     Nothing else is changed. What was changed, from which neighbour, is written beside each take
     as its provenance. With --contacts, of a flag's neighbours the one that comes closest to the
-    contact is taken, and at the end every contact is held at its place.
+    contact is taken and bent to it, and at the end every contact is held at its place.
     """
     from mocapstudio.cli import changes
     from mocapstudio.cli.detection_options import analyse, parameters
@@ -99,21 +98,22 @@ def repaired(
 ) -> tuple[Document, str]:
     """Return a document in which every flag of an analysis is accepted, and the performer's id.
 
-    Where a flag moves a contact of `scene`, the neighbour is taken that comes closest to it. A
-    flag that nothing can be proposed for stays open, with a warning on standard error. At the end
-    the contacts are held.
+    The contacts of `scene` are the document's, so that its proposals keep to them; at the end they
+    are held. A flag that nothing can be proposed for stays open, with a warning on standard error.
     """
     from mocapstudio.review.document import Document
 
     document = Document()
     performer = document.open_take(analysis.take)
+    if scene is not None:
+        from mocapstudio.cli.contact_files import bring
+
+        bring(document, scene)
     document.set_context(context, analysis.context)
     document.set_parameters(analysis.parameters)
     document.finish_analysis(performer, document.begin_analysis(performer), analysis)
     for flag in analysis.flags:
         try:
-            if scene is not None:
-                _meet_contacts(document, analysis, flag, scene)
             document.accept(flag.id)
         except MocapError as error:
             place = f"{flag.joint} at frames {flag.start}:{flag.end}"
@@ -131,12 +131,3 @@ def _scene(path: Path, takes: Sequence[Take], take: Take, contacts: Path | None)
     from mocapstudio.cli.contact_files import with_file
 
     return with_file(path, takes, take, contacts)
-
-
-def _meet_contacts(document: Document, analysis: Analysis, flag: Flag, scene: Touching) -> None:
-    from mocapstudio.cleaning.contacts.aware import donor_for_contacts
-    from mocapstudio.cleaning.proposals import propose
-
-    choice = donor_for_contacts(analysis, flag, scene.contacts, scene.points, scene.others)
-    if choice is not None:
-        document.set_proposal(flag.id, choice, propose(analysis, flag, choice))

@@ -37,7 +37,7 @@ class Touching:
     contacts, points
         Theirs.
     others
-        Takes of partners and props, by name.
+        Takes of partners and props, by name, on this take's clock.
     """
 
     path: Path
@@ -79,7 +79,8 @@ def touching(
         raise FileError(path, "holds no motion of a skeleton")
     if contacts is not None:
         return with_file(path, [*takes, *beside], takes[0], contacts)
-    take, others = takes[0], {one.name: one for one in (*takes[1:], *beside)}
+    take = takes[0]
+    others = _beside(take, (*takes[1:], *beside))
     points = contact_points(take)
     found = run(detecting(take, others, points), "contacts")
     return Touching(path, take, found, points, others)
@@ -105,7 +106,7 @@ def with_file(path: Path, scene: Sequence[Take], take: Take, contacts: Path) -> 
     points = contact_points(take)
     file = read_contacts(contacts, take, points)
     adjusted = {point.key: point for point in (*points, *file.points)}
-    others = {one.name: one for one in scene if one is not take}
+    others = _beside(take, scene)
     for contact in file.contacts:
         target = contact.target
         if isinstance(target, Following) and target.performer not in others:
@@ -116,6 +117,12 @@ def with_file(path: Path, scene: Sequence[Take], take: Take, contacts: Path) -> 
     return Touching(path, take, file.contacts, tuple(adjusted.values()), others)
 
 
+def _beside(take: Take, scene: Sequence[Take]) -> dict[str, Take]:
+    from mocapstudio.review.beside import on_clock
+
+    return {one.name: on_clock(take, 0.0, one, 0.0) for one in scene if one is not take}
+
+
 def held(scene: Touching) -> tuple[SkateResult, Document, str]:
     """Hold every contact; returns the result, and a document with it as edits of a performer."""
     from mocapstudio.review.document import Document
@@ -123,6 +130,18 @@ def held(scene: Touching) -> tuple[SkateResult, Document, str]:
     document = Document()
     performer = document.open_take(scene.take)
     return hold(document, scene), document, performer
+
+
+def bring(document: Document, scene: Touching) -> None:
+    """Give the active performer of a document the contacts of a scene, and the scene's partners."""
+    ids = {name: document.open_take(one, partner=True) for name, one in scene.others.items()}
+    contacts = [
+        replace(one, target=replace(one.target, performer=ids[one.target.performer]))
+        if isinstance(one.target, Following)
+        else one
+        for one in scene.contacts
+    ]
+    document.load_contacts(contacts, scene.points)
 
 
 def hold(document: Document, scene: Touching) -> SkateResult:

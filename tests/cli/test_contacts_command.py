@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import hashlib
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from mocapstudio import formats
+from mocapstudio.cleaning.contacts.model import ON_CONTACTS
 from mocapstudio.cleaning.contacts.points import contact_points, point_positions
 from mocapstudio.evaluation.demo.skeleton import demo_skeleton
 from mocapstudio.evaluation.demo.take import demo_motion
+from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.facing import ROOT_POSITION
 from mocapstudio.motion.take import Take
 
@@ -119,6 +122,32 @@ def test_clean_keeps_contacts(mocapstudio, skating: Path, tmp_path: Path) -> Non
     assert any(change["method"] == "contacts" for change in take["changes"])
     after = mocapstudio("contacts", out, "--contacts", kept, "--json", "-")
     assert json.loads(after.stdout)["slide"]["before"] < 0.02
+
+
+def test_a_repair_of_clean_is_bent_to_what_the_foot_stands_on(
+    mocapstudio, skating: Path, tmp_path: Path
+) -> None:
+    kept, out = tmp_path / "contacts.json", tmp_path / "clean.bvh"
+    done = mocapstudio("contacts", skating, "--contacts-out", kept, "--json", "-")
+    found = json.loads(done.stdout)["contacts"]
+    stood = max(
+        (one for one in found if one["joint"].startswith("Left") and one["start"] > 20),
+        key=lambda one: one["end"] - one["start"],
+    )
+    take = formats.read(skating)[0][0]
+    rotations = take.rotations.copy()
+    middle = (stood["start"] + stood["end"]) // 2
+    wrong = slice(middle - 4, middle + 4), take.skeleton.index["LeftLeg"]
+    rotations[wrong] = rot.multiply(rotations[wrong], rot.about_axis(2, np.deg2rad(60.0)))
+    spoiled = tmp_path / "spoiled.bvh"
+    formats.write(replace(take, rotations=rotations, source=None), spoiled)
+    done = mocapstudio("clean", "--quick", spoiled, "--contacts", kept, "-o", out, "--json", "-")
+    assert done.returncode == 0, done.stderr
+    [record] = json.loads(done.stdout)["takes"]
+    methods = {change["method"] for change in record["changes"] if change["joint"] == "LeftLeg"}
+    assert any(method.endswith(f", {ON_CONTACTS}") for method in methods), methods
+    [provenance] = (one for one in tmp_path.iterdir() if "provenance" in one.name)
+    assert all(f'"{method}"' in provenance.read_text() for method in methods)
 
 
 def test_a_bad_file_of_contacts_is_one_line(mocapstudio, skating: Path, tmp_path: Path) -> None:
