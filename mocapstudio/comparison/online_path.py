@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from mocapstudio.comparison.online import OnlineAligner, Variant
 from mocapstudio.comparison.online_features import F32, Recording
 from mocapstudio.comparison.online_reference import reference_of
+from mocapstudio.comparison.weights import JointWeights
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.progress import Progress
 
@@ -53,27 +54,43 @@ class OnlinePath:
 
 
 def following(
-    reference: Recording, source: Recording, variant: Variant = Variant.PLAIN
+    reference: Recording,
+    source: Recording,
+    variant: Variant = Variant.PLAIN,
+    learnt: JointWeights | None = None,
 ) -> Generator[Progress, None, OnlinePath]:
     """Align a take with a reference as if its frames arrived one by one; yields progress.
 
     Long takes are thinned out: to 30 frames a second, and to 1500 frames at most.
 
+    Parameters
+    ----------
+    reference, source
+        What is aligned with, and what with it.
+    variant
+        How paths are accumulated without `learnt`.
+    learnt
+        Weights, which also tell whether motion counts and how paths are accumulated.
+
     Raises
     ------
     SkeletonMismatchError
-        If the takes have too little in common, or one holds markers and the other joints.
+        If the takes have too little in common, or one holds markers and the other joints, or the
+        weights are not for the reference.
     MocapError
         If the reference is too short, or nothing of the source can be seen.
     """
     start, end = source.span
     seconds = max((one.span[1] - one.span[0]) / float(one.rate) for one in (reference, source))
     rate = min(_RATE, float(source.rate), float(reference.rate), _MOST / seconds)
-    prepared = reference_of(reference, (source,), rate)
+    motion = learnt is None or learnt.motion
+    prepared = reference_of(reference, (source,), rate, motion=motion)
+    chosen = None if learnt is None else learnt.fitting(prepared)
+    variant = variant if learnt is None else learnt.variant
     step = float(source.rate) / rate
     at = np.arange(int((end - start - 1) / step + 1e-6) + 1) * step
     poses = prepared.features.of(source)[np.rint(at).astype(np.int64)]
-    aligner = OnlineAligner(prepared, None, variant, path_frames=len(poses))
+    aligner = OnlineAligner(prepared, chosen, variant, path_frames=len(poses))
     distances = np.zeros((len(poses), len(prepared)), np.float32)
     accumulated = np.zeros_like(distances)
     answers = np.zeros(len(poses), np.int64)

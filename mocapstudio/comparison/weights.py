@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,9 @@ from mocapstudio.comparison.online_reference import MOTION, Reference
 from mocapstudio.formats.atomic import write_whole
 from mocapstudio.formats.json_file import read_json
 from mocapstudio.motion.errors import FileError, MocapError, ParameterError, SkeletonMismatchError
+
+_NAMED = 5
+"""How many of what does not fit are named."""
 
 
 @dataclass(frozen=True)
@@ -91,13 +94,35 @@ class JointWeights:
         SkeletonMismatchError
             If rows with less than half of the whole weight are compared.
         """
-        found = {name: self.weights[name] for name in reference.names if name in self.weights}
-        if 2 * sum(found.values()) < sum(self.weights.values()):
+        self.check(reference.name, reference.names)
+        return {name: self.weights[name] for name in reference.names if name in self.weights}
+
+    def check(self, name: str, rows: Iterable[str]) -> None:
+        """Refuse weights that are not for what is compared.
+
+        Parameters
+        ----------
+        name
+            Of the reference.
+        rows
+            Joints or bones that are compared, and how they move where that counts.
+
+        Raises
+        ------
+        SkeletonMismatchError
+            If rows with less than half of the whole weight are compared; names what is not.
+        """
+        there = set(rows)
+        absent = [one for one in self.weights if one not in there]
+        if 2 * sum(self.weights[one] for one in absent) > sum(self.weights.values()):
+            fit = len(self.weights) - len(absent)
+            absent.sort(key=lambda one: -self.weights[one])
+            which = ", ".join(absent[:_NAMED])
+            more = f" and {len(absent) - _NAMED} more" if len(absent) > _NAMED else ""
             raise SkeletonMismatchError(
-                f"the weights are not for {reference.name}: only {len(found)} of"
-                f" {len(self.weights)} belong to something that is compared"
+                f"the weights are not for {name}: only {fit} of {len(self.weights)} belong to"
+                f" something that is compared; {which}{more} do not"
             )
-        return found
 
 
 def write_weights(weights: JointWeights, path: Path) -> None:

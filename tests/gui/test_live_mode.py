@@ -25,6 +25,7 @@ from mocapstudio.gui.compare.live_opening import LiveRequest, open_live
 from mocapstudio.gui.dialogs.trouble import TroubleDialog
 from mocapstudio.gui.jobs import Lines
 from mocapstudio.motion.markers import MarkerTake
+from mocapstudio.review.matrix_model import Picture
 
 RATE = 30
 STILL = 20
@@ -337,6 +338,39 @@ def test_weights_are_opened_shown_and_used(hands, workspace, weights_file):
     hands.press("X")
     hands.see(lambda: hands.shows("compare-matrix-view"))
     assert not live.shown.weights_shown
+
+
+def test_weights_of_another_body_are_refused_when_they_are_opened(hands, workspace, tmp_path):
+    other = tmp_path / "horse.json"
+    write_weights(JointWeights({"Hoof": 3.0, "Tail": 2.0, "LeftArm": 1.0}), other)
+    hands.press("W", CTRL | SHIFT)
+    hands.answer_file_dialog(other)
+    hands.see(lambda: isinstance(QApplication.activeModalWidget(), TroubleDialog))
+    said = " ".join(one.text() for one in QApplication.activeModalWidget().findChildren(QLabel))
+    assert "not for teacher" in said
+    assert "Hoof, Tail do not" in said
+    QApplication.activeModalWidget().close()
+    hands.come_back()
+    assert workspace.live.shown.weights is None
+
+
+def test_weights_serve_the_online_matrix(hands, workspace, weights_file):
+    matrix, picture = workspace.desk.matrix, Picture.DISTANCES
+    hands.press("X")
+    workspace.bridge.set_ui(matrix_online=True)
+    hands.see(lambda: matrix.shown is not None, 60)
+    plain = matrix.shown
+    whole = [(-0.5, frames - 0.5) for frames in plain.frames]
+    workspace.live_answering.open_weights(weights_file)
+    hands.press("X")
+    hands.see(lambda: matrix.shown not in (None, plain), 60)
+    one, other = (m.pooled(picture, *whole, 200).values for m in (plain, matrix.shown))
+    assert one.shape == other.shape
+    assert not np.allclose(one / one.max(), other / other.max(), atol=0.02)
+    # Without them it is as it was.
+    hands.menu("Live", "Without Weights")
+    hands.see(lambda: matrix.shown is not None and np.array_equal(
+        matrix.shown.pooled(picture, *whole, 200).values, one), 60)  # fmt: skip
 
 
 def test_a_file_without_weights_is_told(hands, workspace, tmp_path):

@@ -54,7 +54,7 @@ class CompareDesk(QWidget):
         self.segments = SegmentsView(bridge, actions)
         self._side = QStackedWidget()
         self._side.addWidget(self.segments)
-        self.matrix = MatrixView(bridge, jobs)
+        self.matrix = MatrixView(bridge, live, jobs)
         self._side.addWidget(self.matrix)
         self._side.addWidget(WeightsView(bridge, live, actions))
         self._below = QStackedWidget()

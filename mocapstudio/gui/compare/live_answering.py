@@ -11,6 +11,7 @@ from mocapstudio.comparison.weights import read_weights
 from mocapstudio.gui import settings
 from mocapstudio.gui.compare.live_bridge import Phase
 from mocapstudio.gui.compare.part import WorkspacePart
+from mocapstudio.gui.compare.weight_rows import check_weights
 from mocapstudio.gui.dialogs.files import FileRequest, ask_for_files
 from mocapstudio.gui.workspaces.workspace import Answers
 from mocapstudio.motion.errors import MocapError
@@ -87,6 +88,13 @@ class LiveAnswering(WorkspacePart):
         except MocapError as error:
             self._window.messages.complain(error, "The weights could not be read")
             return
+        reference = self._bridge.state.reference
+        if reference is not None:
+            try:
+                check_weights(weights, reference)
+            except MocapError as error:
+                self._window.messages.complain(error, f"{path.name} does not fit the reference")
+                return
         settings.set_folder("weights", path)
         self._bridge.set_ui(matrix=False)
         self._live.set(weights_shown=True)

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Generator
+from dataclasses import dataclass
 
 from PySide6.QtCore import QSignalBlocker
 from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QVBoxLayout, QWidget
 
 from mocapstudio.comparison.online_path import OnlinePath
+from mocapstudio.comparison.weights import JointWeights
 from mocapstudio.gui.compare.bridge import CompareBridge, CompareUi
+from mocapstudio.gui.compare.live_bridge import LiveBridge, LiveShown
 from mocapstudio.gui.compare.matrix_plot import Box, MatrixPlot
 from mocapstudio.gui.compare.parameter_fields import quiet_box
 from mocapstudio.gui.jobs import Jobs
@@ -28,6 +31,24 @@ from mocapstudio.review.matrix_model import (
 _JOB = "online matrix"
 
 
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """Who is followed, and by which weights."""
+
+    reference: Recording
+    source: Compared
+    weights: JointWeights | None
+
+    def same(self, other: Asked | None) -> bool:
+        """Whether the answer is the same."""
+        return (
+            other is not None
+            and other.reference is self.reference
+            and other.source.take is self.source.take
+            and other.weights is self.weights
+        )
+
+
 class MatrixView(QFrame):
     """Shows the stretch of time that the pictures show, and goes where it is clicked.
 
@@ -35,18 +56,21 @@ class MatrixView(QFrame):
     ----------
     bridge
         Where state comes from and intents go.
+    live
+        Tells the weights in force online.
     jobs
         Runs the online alignment.
     """
 
-    def __init__(self, bridge: CompareBridge, jobs: Jobs) -> None:
+    def __init__(self, bridge: CompareBridge, live: LiveBridge, jobs: Jobs) -> None:
         super().__init__()
         self.setObjectName("compare-matrix-panel")
         self.setProperty("role", "panel")
-        self._bridge, self._jobs = bridge, jobs
+        self._bridge, self._live, self._jobs = bridge, live, jobs
         self._compared: tuple[Linked, ComparedMatrix] | None = None
-        self._online: tuple[Recording, Recording, KnownMatrix | str] | None = None
-        self._wanted: Compared | None = None
+        self._online: tuple[Asked, KnownMatrix | str] | None = None
+        self._wanted: Asked | None = None
+        self._shown: Matrix | None = None
         self.plot = MatrixPlot()
         self.plot.setObjectName("compare-matrix-view")
         self._hint = Hint(self.plot, "matrix-hint")
@@ -56,12 +80,19 @@ class MatrixView(QFrame):
         self.plot.zoomed.connect(bridge.sitting.show)
         bridge.changed.connect(self._follow)
         bridge.ui_changed.connect(self._follow_ui)
+        live.changed.connect(self._follow_live)
+
+    @property
+    def shown(self) -> Matrix | None:
+        """What is drawn, None while there is nothing."""
+        return self._shown
 
     def _lay_out(self) -> None:
         self._kind.setObjectName("matrix-kind")
         self._kind.setToolTip(
             "After the fact: the path that the pictures show.\n"
-            "Online: the path found frame by frame, as live mode does; the picture is its costs."
+            "Online: the path found frame by frame, as live mode does, with the weights that are"
+            " open;\nthe picture is its costs."
         )
         self._kind.addItems(("after the fact", "online"))
         self._kind.activated.connect(self._choose_kind)
@@ -92,7 +123,7 @@ class MatrixView(QFrame):
         column.addWidget(room, 1)
 
     def _choose_kind(self, at: int) -> None:
-        if self._online is not None and isinstance(self._online[2], str):
+        if self._online is not None and isinstance(self._online[1], str):
             # What failed or was cancelled is tried again.
             self._online = None
         self._bridge.set_ui(matrix_online=at == 1)
@@ -109,6 +140,10 @@ class MatrixView(QFrame):
 
     def _follow_ui(self, old: CompareUi, new: CompareUi) -> None:
         if (old.matrix_online, old.matrix_picture) != (new.matrix_online, new.matrix_picture):
+            self._show(self._bridge.state)
+
+    def _follow_live(self, old: LiveShown, new: LiveShown) -> None:
+        if old.weights is not new.weights and self.isVisible():
             self._show(self._bridge.state)
 
     def showEvent(self, event: QShowEvent) -> None:
@@ -131,6 +166,7 @@ class MatrixView(QFrame):
         else:
             matrix = self._compared_of(state)
             boxes = _boxes(state)
+        self._shown = matrix
         self._hint.say(words)
         self.plot.show_matrix(matrix, ui.matrix_picture, state.shown, boxes)
         self.plot.set_heads((state.frame, state.source_frame))
@@ -147,36 +183,34 @@ class MatrixView(QFrame):
         source = state.source
         if source is None or state.reference is None:
             return None, ""
-        if self._online is not None:
-            reference, take, found = self._online
-            if reference is state.reference and take is source.take:
-                return (None, found) if isinstance(found, str) else (found, "")
-        if self._wanted is not source:
-            self._work(source)
+        asked = Asked(state.reference, source, self._live.shown.weights)
+        if self._online is not None and asked.same(self._online[0]):
+            found = self._online[1]
+            return (None, found) if isinstance(found, str) else (found, "")
+        if not asked.same(self._wanted):
+            self._work(asked)
         return None, f"Following {source.id}…"
 
-    def _work(self, source: Compared) -> None:
-        reference = self._bridge.state.reference
-        assert reference is not None
-        self._wanted = source
+    def _work(self, asked: Asked) -> None:
+        self._wanted, name = asked, asked.source.id
 
         def work() -> Generator[Progress, None, OnlinePath]:
-            yield Progress(0.0, f"following {source.id}")
+            yield Progress(0.0, f"following {name}")
             from mocapstudio.comparison.online_path import following
 
-            return (yield from following(reference, source.take))
+            take = asked.source.take
+            return (yield from following(asked.reference, take, learnt=asked.weights))
 
         def settle(found: KnownMatrix | str) -> None:
-            if self._wanted is source and reference is self._bridge.state.reference:
-                self._online = reference, source.take, found
+            if self._wanted is asked:
+                self._online, self._wanted = (asked, found), None
                 self._show(self._bridge.state)
-            self._wanted = None
 
         job = self._jobs.start(
-            f"Following {source.id}",
+            f"Following {name}",
             work(),
             lambda found: settle(online_matrix(found)),
-            lambda error: settle(f"{source.id} cannot be followed: {error}"),
+            lambda error: settle(f"{name} cannot be followed: {error}"),
             key=_JOB,
         )
         job.ended.connect(lambda: settle("Cancelled.") if job.cancelled else None)

@@ -54,3 +54,17 @@ def weight_rows(weights: JointWeights | None, reference: Recording | None) -> tu
             for name in names
         ]
     return tuple(sorted(rows, key=lambda row: -row.total))
+
+
+def check_weights(weights: JointWeights, reference: Recording) -> None:
+    """Refuse weights that do not fit a reference.
+
+    Raises
+    ------
+    SkeletonMismatchError
+        If most of the weight is on what the reference does not have; names it.
+    MocapError
+        If nothing of the reference can be compared.
+    """
+    names = features_of(reference).names
+    weights.check(reference.name, (*names, *(name + MOTION for name in names)))
