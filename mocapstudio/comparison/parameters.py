@@ -11,12 +11,10 @@ from mocapstudio.motion.parameters import bounded, check, choice, switch
 BOX = "box"
 ROOT = "root"
 ROTATIONS = "rotations"
-FEATURES = (BOX, ROOT, ROTATIONS)
 
 CLOSED = "closed"
 REFERENCE = "reference"
 SOURCE = "source"
-ENDS = (CLOSED, REFERENCE, SOURCE)
 
 Side = Literal["reference", "source"]
 

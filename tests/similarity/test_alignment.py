@@ -16,7 +16,6 @@ from mocapstudio.similarity.alignment import dtw, kernels
 from mocapstudio.similarity.alignment.costs import KnownCosts, PoseDistances, ReliableDistances
 from mocapstudio.similarity.alignment.dtw import (
     CLOSED,
-    WITHIN_SOURCE,
     Alignment,
     Ends,
     accumulated,
@@ -25,6 +24,8 @@ from mocapstudio.similarity.alignment.dtw import (
 )
 from mocapstudio.similarity.alignment.frugal import aligning_frugally
 
+# Subsequence alignment: the whole reference somewhere in the source.
+WITHIN_SOURCE = Ends("source", "source")
 ENDS = [
     CLOSED,
     WITHIN_SOURCE,

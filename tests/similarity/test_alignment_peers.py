@@ -10,7 +10,6 @@ from mocapstudio.evaluation.kata_peers import dtaidistance, dtw_python
 from mocapstudio.motion.progress import run
 from mocapstudio.similarity.alignment.costs import KnownCosts, PoseDistances
 from mocapstudio.similarity.alignment.dtw import (
-    WITHIN_SOURCE,
     Ends,
     accumulated,
     align,
@@ -87,7 +86,7 @@ def test_a_subsequence_is_that_of_dtaidistance() -> None:
     query, series = wander(20, 1, 0), wander(150, 1, 1)
     found = peer.subsequence_alignment(query[:, 0], series[:, 0], penalty=0.0)
     costs = squares(query, series)
-    ours = np.sqrt(whole(costs, WITHIN_SOURCE)[-1]) / len(query)
+    ours = np.sqrt(whole(costs, Ends("source", "source"))[-1]) / len(query)
     np.testing.assert_allclose(ours, found.matching, rtol=1e-5)
-    path = align(costs, WITHIN_SOURCE).path
+    path = align(costs, Ends("source", "source")).path
     assert [path[0, 1], path[-1, 1]] == list(found.best_match().segment)

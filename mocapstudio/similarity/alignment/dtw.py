@@ -49,8 +49,6 @@ class Ends:
 
 
 CLOSED = Ends()
-WITHIN_SOURCE = Ends("source", "source")
-"""Subsequence alignment: the whole reference somewhere in the source."""
 
 
 @dataclass(frozen=True, eq=False)
