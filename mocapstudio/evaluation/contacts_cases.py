@@ -74,9 +74,11 @@ def marked(data: Sequence[Path], labels: Path) -> list[ContactCase]:
     files = sorted(labels.glob("*.json")) if labels.is_dir() else [labels]
     cases = []
     for file in files:
-        record = _parsed(file)
+        record = parsed(file)
+        if "held" in record:
+            continue
         try:
-            path = _found(data, record["take"])
+            path = below(data, record["take"])
             if path is not None:
                 cases.append(_marked(formats.read(path)[0][0], record))
         except (KeyError, TypeError, ValueError, AttributeError) as cause:
@@ -84,7 +86,14 @@ def marked(data: Sequence[Path], labels: Path) -> list[ContactCase]:
     return cases
 
 
-def _parsed(file: Path) -> dict[str, Any]:
+def parsed(file: Path) -> dict[str, Any]:
+    """Read a file of labels.
+
+    Raises
+    ------
+    FileError
+        If it cannot be read or is no JSON.
+    """
     try:
         content: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
     except OSError as cause:
@@ -96,7 +105,7 @@ def _parsed(file: Path) -> dict[str, Any]:
     return content
 
 
-def _found(data: Sequence[Path], name: str) -> Path | None:
+def below(data: Sequence[Path], name: str) -> Path | None:
     """Look for a take below the data, or below what the data lies in."""
     for folder in data:
         for base in (folder, folder.parent):
@@ -111,14 +120,15 @@ def _marked(take: Take, record: Mapping[str, Any]) -> ContactCase:
     for name, spans in record["contacts"].items():
         joint, point = name.rsplit(" ", 1)
         key: Key = (joint, point)
-        truth[key] = _mask(take.frames, spans)
-        sure[key] = _mask(take.frames, [(low, high)])
-        sure[key] &= ~_mask(take.frames, record["unsure"].get(name, []))
+        truth[key] = mask_of(take.frames, spans)
+        sure[key] = mask_of(take.frames, [(low, high)])
+        sure[key] &= ~mask_of(take.frames, record["unsure"].get(name, []))
     part: Part = "test" if record["part"] == "test" else "development"
     return ContactCase(take, part, truth, sure)
 
 
-def _mask(frames: int, spans: Sequence[Sequence[int]]) -> Mask:
+def mask_of(frames: int, spans: Sequence[Sequence[int]]) -> Mask:
+    """(frames,) True inside half-open spans."""
     mask = np.zeros(frames, dtype=bool)
     for start, end in spans:
         mask[start:end] = True

@@ -11,6 +11,7 @@ import numpy as np
 from mocapstudio.cleaning.contacts.detection import detect_contacts
 from mocapstudio.evaluation import page
 from mocapstudio.evaluation.contacts_cases import MADE_SECONDS, ContactCase, made, marked
+from mocapstudio.evaluation.contacts_hands import marked_hands, score_hands
 from mocapstudio.evaluation.contacts_peers import tuned
 from mocapstudio.evaluation.contacts_scoring import ContactScores, Tally, score_contacts
 from mocapstudio.evaluation.contacts_slide import SlideRow, measure
@@ -20,7 +21,7 @@ from mocapstudio.evaluation.tables import Table, number
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.progress import Progress
 
-_POINTS = ("heel", "ball", "toe")
+_POINTS = ("heel", "ball", "toe", "palm")
 _MOST_JERK, _NO_MORE = 1.2, 1.02
 """Times the take's own 99th percentile; times what there was before."""
 _NOTE = (
@@ -60,6 +61,10 @@ def contacts(
         yield Progress(0.02, f"contacts {name}")
         if training and test:
             sections.append((f"Contacts {name}", _takes(test), _scored(training, test)))
+    held = [] if labels is None else marked_hands(data, labels)
+    if held:
+        takes = ", ".join(f"{case.take.name} with {case.partner.name}" for case in held)
+        sections.append(("Hands that hold each other", takes, [score_hands("ours", held)]))
     rows: dict[str, list[SlideRow]] = {}
     chosen = _chosen(data, limit)
     for i, (folder, path) in enumerate(chosen):

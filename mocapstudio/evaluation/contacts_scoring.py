@@ -83,9 +83,9 @@ def score_contacts(name: str, detector: Detector, cases: Sequence[ContactCase]) 
                 if (contact.joint, contact.point) == key:
                     claimed[contact.start : contact.end] = True
             sure = case.sure[key]
-            clear = sure & ~_near_edges(truth, max(1, round(TOLERANCE * rate)))
-            strict += _tally(claimed, truth, sure, rate)
-            one = _tally(claimed, truth, clear, rate)
+            clear = tolerated(truth, sure, rate)
+            strict += tally(claimed, truth, sure, rate)
+            one = tally(claimed, truth, clear, rate)
             own += one
             points[key[1] or ""] = points.get(key[1] or "", Tally()) + one
         tolerant += own
@@ -93,12 +93,18 @@ def score_contacts(name: str, detector: Detector, cases: Sequence[ContactCase]) 
     return ContactScores(name, tolerant, strict, points, worst)
 
 
-def _tally(claimed: Mask, truth: Mask, where: Mask, rate: float) -> Tally:
+def tally(claimed: Mask, truth: Mask, where: Mask, rate: float) -> Tally:
+    """Compare what was found with the truth, (F,) each, in the frames `where`; `rate` in Hz."""
     hit, false, missed = (
         float(np.sum(a & b & where)) / rate
         for a, b in ((claimed, truth), (claimed, ~truth), (~claimed, truth))
     )
     return Tally(hit, false, missed)
+
+
+def tolerated(truth: Mask, sure: Mask, rate: float) -> Mask:
+    """(F,) frames that are sure, and farther than `TOLERANCE` from a true edge."""
+    return sure & ~_near_edges(truth, max(1, round(TOLERANCE * rate)))
 
 
 def _near_edges(truth: Mask, reach: int) -> Mask:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +11,7 @@ from mocapstudio import formats
 from mocapstudio.cleaning.contacts.detection import detect_contacts
 from mocapstudio.cleaning.contacts.model import Following
 from mocapstudio.evaluation.contacts_cases import marked
+from mocapstudio.evaluation.contacts_hands import marked_hands, score_hands
 from mocapstudio.evaluation.contacts_peers import threshold
 from mocapstudio.evaluation.contacts_scoring import score_contacts
 
@@ -48,23 +48,11 @@ def test_joined_hands_of_a_pair(data: Path) -> None:
 
 
 def test_hands_that_were_seen_to_hold_each_other(data: Path) -> None:
-    record = json.loads((LABELS / "hands" / "60_11.json").read_text())
-    take, partner = (formats.read(data / record[key])[0][0] for key in ("take", "partner"))
-    found = detect_contacts(take, (partner,))
-    hit, false, missed = 0, 0, 0
-    for pair, spans in record["held"].items():
-        truth, sure, claimed = (np.zeros(take.frames, bool) for _ in range(3))
-        sure[slice(*record["span"])] = True
-        for start, end in record["unsure"].get(pair, []):
-            sure[start:end] = False
-        for start, end in spans:
-            truth[start:end] = True
-        for contact in found:
-            target = contact.target
-            if isinstance(target, Following) and pair == f"{contact.joint} {target.joint}":
-                claimed[contact.start : contact.end] = True
-        hit += int(np.sum(claimed & truth & sure))
-        false += int(np.sum(claimed & ~truth & sure))
-        missed += int(np.sum(~claimed & truth & sure))
-    assert hit / (hit + false) > 0.95
-    assert hit / (hit + missed) > 0.85
+    [case] = marked_hands([data], LABELS / "hands" / "60_11.json")
+    scores = score_hands("ours", [case])
+    assert scores.strict.precision > 0.95
+    assert scores.strict.recall > 0.85
+    everything = marked_hands([data], LABELS)
+    assert [one.take.name for one in everything] == ["60_02_scaled", "60_11_scaled"]
+    # The files of feet, beside them, are read without them.
+    assert marked([data], LABELS / "hands") == []
