@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 from types import MappingProxyType
+from typing import Any
 
 from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.markers import MarkerTake
+from mocapstudio.review import protection
 from mocapstudio.review.core import Core, new_id
 from mocapstudio.review.decisions import Stamp
 from mocapstudio.review.marker_fills import fill_method
@@ -20,7 +22,8 @@ from mocapstudio.review.marker_model import (
     Parameters,
 )
 from mocapstudio.review.marker_replay import marker_declared
-from mocapstudio.review.rows import check_span
+from mocapstudio.review.model import Protected, Sitting
+from mocapstudio.review.rows import check_span, union
 
 _NONE: Parameters = MappingProxyType({})
 
@@ -181,6 +184,51 @@ class Marking(Core):
             kept = tuple(edit for edit in sitting.marker_edits if id(edit) not in gone)
             label = "Take an edit back" if len(gone) == 1 else f"Take {len(gone)} edits back"
             self._commit(label, replace(sitting, marker_edits=kept))
+
+    def protect_markers(
+        self, performer: str, markers: Collection[str], start: int, end: int
+    ) -> None:
+        """Let nothing change markers × [start, end) of a marker take; no markers means all.
+
+        Raises
+        ------
+        MocapError
+            If the take has no such markers or frames.
+        """
+        rows = frozenset(markers)
+        self._check(self.marker_performer(performer).take, sorted(rows), start, end)
+        stamp, sitting = self._stamp(), self._history.present
+        added = Protected(performer, rows, int(start), int(end), stamp.author, stamp.time)
+        if not any(
+            replace(p, author=added.author, time=added.time) == added for p in sitting.protected
+        ):
+            self._commit("Protect", replace(sitting, protected=(*sitting.protected, added)))
+
+    def unprotect_markers(
+        self, performer: str, markers: Collection[str], start: int, end: int
+    ) -> None:
+        """Take markers × [start, end) out of the protected spans; no markers means all."""
+        take, rows = self.marker_performer(performer).take, frozenset(markers)
+        self._check(take, sorted(rows), start, end)
+        sitting = self._history.present
+        left = protection.unprotected(take, sitting.protected, performer, rows, start, end)
+        self._commit("Unprotect", replace(sitting, protected=left))
+
+    def markers_protected(self, performer: str) -> tuple[Declared, ...]:
+        """Protected markers × spans of a marker take."""
+        labels = self.marker_performer(performer).take.labels
+        return union(
+            Declared(label, p.start, p.end)
+            for p in self._history.present.protected
+            if p.performer == performer
+            for label in (p.joints or labels)
+        )
+
+    def _commit(self, label: str, sitting: Sitting, **changes: Any) -> None:
+        """Go on to another sitting; refuses what would change protected markers."""
+        for one in self._state.markers:
+            protection.check_marker_edits(one.id, self._history.present, sitting)
+        super()._commit(label, sitting, **changes)
 
     def _add(
         self,

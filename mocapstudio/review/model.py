@@ -140,7 +140,10 @@ class Decision:
 
 @dataclass(frozen=True)
 class Protected:
-    """Rows x span that nothing may change. Empty `joints` means all rows."""
+    """Rows x span that nothing may change. Empty `joints` means all rows.
+
+    Of a marker take the rows are its markers.
+    """
 
     performer: str
     joints: frozenset[str]

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from mocapstudio.motion.errors import MocapError
+from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.motion.take import Take
 from mocapstudio.review.model import Edit, Protected, Sitting
 from mocapstudio.review.rows import rows_of, samples_of
@@ -44,8 +45,31 @@ def _check_edit(take: Take, edit: Edit, spans: Iterable[Protected]) -> None:
                 raise ProtectedError(f"{row} is protected in frames {start} to {end}")
 
 
+def check_marker_edits(performer: str, before: Sitting, after: Sitting) -> None:
+    """Refuse a step that adds, removes, mutes or unmutes an edit on protected markers.
+
+    Raises
+    ------
+    ProtectedError
+        Naming the first marker and the frames concerned, 0-based, end exclusive.
+    """
+    spans = [p for p in after.protected if p.performer == performer]
+    if not spans:
+        return
+    old = {id(e) for e in before.marker_edits if not e.muted}
+    new = {id(e) for e in after.marker_edits if not e.muted}
+    for edit in (*before.marker_edits, *after.marker_edits):
+        if edit.performer != performer or (id(edit) in old) == (id(edit) in new):
+            continue
+        for span in spans:
+            start, end = max(edit.start, span.start), min(edit.end, span.end)
+            closed = [one for one in edit.markers if not span.joints or one in span.joints]
+            if start < end and closed:
+                raise ProtectedError(f"{closed[0]} is protected in frames {start} to {end}")
+
+
 def unprotected(
-    take: Take,
+    take: Take | MarkerTake,
     protected: tuple[Protected, ...],
     performer: str,
     rows: frozenset[str],
@@ -62,7 +86,8 @@ def unprotected(
             continue
         if one.start < left:
             kept.append(replace(one, end=left))
-        still = (one.joints or frozenset(rows_of(take))) - rows if rows else frozenset[str]()
+        every = take.labels if isinstance(take, MarkerTake) else rows_of(take)
+        still = (one.joints or frozenset(every)) - rows if rows else frozenset[str]()
         if still:
             kept.append(replace(one, joints=still, start=left, end=right))
         if right < one.end:

@@ -24,7 +24,7 @@ from mocapstudio.review.records import (
     check_unique,
 )
 from mocapstudio.review.take_record import TakeRecord
-from mocapstudio.review.wire import FlagRecord, SittingRecord
+from mocapstudio.review.wire import FlagRecord, ProtectedRecord, SittingRecord
 
 FORMAT = "mocapstudio session"
 VERSION = 1
@@ -156,7 +156,7 @@ class _Checks:
         for decision in record.decisions:
             self.flag(decision.performer, decision.flag)
         for protected in record.protected:
-            self.span(protected.performer, protected.joints, protected.start, protected.end)
+            self.protected(protected)
         for trim in record.trims:
             self.span(trim.performer, (), trim.start, trim.end)
         for contact in record.contacts:
@@ -168,6 +168,14 @@ class _Checks:
                 raise MalformedError(f"{change.performer} has no marker {label}")
         for own in record.points:
             self.span(own.performer, (point.joint for point in own.points), 0, 1)
+
+    def protected(self, one: ProtectedRecord) -> None:
+        self.span(one.performer, (), one.start, one.end)
+        labels = self._takes[one.performer].labels
+        rows = self._rows[one.performer] if labels is None else set(labels)
+        for row in set(one.joints) - rows:
+            what = "joint" if labels is None else "marker"
+            raise MalformedError(f"{one.performer} has no {what} {row}")
 
     def flag(self, performer: str, one: FlagRecord) -> None:
         self.span(performer, (one.joint, *one.joints), one.start, one.end)

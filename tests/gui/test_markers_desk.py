@@ -10,9 +10,10 @@ from hands import CTRL, Hands
 from made_takes import walking
 from mouse import click, drag
 from PySide6.QtCore import QPointF, Qt
-from PySide6.QtWidgets import QTableView, QToolButton
+from PySide6.QtWidgets import QApplication, QTableView, QToolButton
 
 from mocapstudio import formats
+from mocapstudio.gui.dialogs.trouble import TroubleDialog
 from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.runs import runs
 from mocapstudio.review.document import Document
@@ -330,3 +331,37 @@ def test_a_take_of_joints_is_shown_for_review_and_the_markers_stay(user, take, t
     hands.key(Qt.Key.Key_4, CTRL)
     assert hands.shows("markers-table")
     assert len(hands.window.bridge.state.markers) == 1
+
+
+def test_what_is_protected_stays_as_it_is(user, take):
+    hands, workspace = user, opened(user, take)
+    bridge, document = workspace.bridge, user.window.bridge.document
+    told = []
+    hands.window.messages.told.connect(lambda text, _about: told.append(text))
+    hands.press("N")
+    shown = bridge.shown
+    hands.press("P", SHIFT)
+    assert bridge.shown.protected == (Declared(shown.marker, *shown.span),)
+    hands.press("1")
+    assert told[-1] == f"{shown.marker} is protected there: Shift+U lifts the protection."
+    hands.key(Qt.Key.Key_Delete)
+    hands.see(lambda: isinstance(QApplication.activeModalWidget(), TroubleDialog))
+    QApplication.activeModalWidget().close()
+    hands.come_back()
+    assert not bridge.shown.edits
+    # The other short gaps are filled.
+    short = bridge.shown.gaps.up_to(bridge.shown.longest)
+    spared = [one for one in short if one.marker == shown.marker
+              and (one.start, one.end) == shown.span]  # fmt: skip
+    hands.press("A", SHIFT)
+    wait_for_edits(hands, len(short) - len(spared))
+    assert (
+        document.marker_result(shown.performer)
+        .missing[slice(*shown.span), shown.source.index[shown.marker]]
+        .all()
+    )
+    bridge.choose(shown.marker, shown.span[0])
+    hands.press("U", SHIFT)
+    assert not bridge.shown.protected
+    hands.press("1")
+    wait_for_edits(hands, len(short) - len(spared) + 1)

@@ -21,6 +21,7 @@ from mocapstudio.review import journal, session_file, session_record
 from mocapstudio.review.document import Document
 from mocapstudio.review.marker_export import export_markers
 from mocapstudio.review.marker_fills import METHODS, filling
+from mocapstudio.review.protection import ProtectedError
 
 FRAMES = 60
 LABELS = ("LFHD", "RFHD", "LBHD", "RBHD", "FREE")
@@ -236,3 +237,47 @@ def test_an_export_changes_the_declared_cells_alone(tmp_path, suffix: str) -> No
         assert again.filled.sum() == 10
     with pytest.raises(FileError):
         export_markers(document, name, file)
+
+
+def test_what_is_protected_refuses_every_edit_and_says_where(sitting) -> None:
+    document, name = sitting
+    early = document.clear_markers(name, ["RFHD"], 2, 6)
+    document.protect_markers(name, ["LFHD", "RFHD"], 4, 15)
+    for change in (
+        lambda: fill(document, name, "rigid", Declared("LFHD", 12, 13)),
+        lambda: document.clear_markers(name, ["FREE", "LFHD"], 0, 5),
+        lambda: document.exchange_markers(name, "LBHD", "RFHD", 14, 40),
+        lambda: document.mute_marker_edit(early),
+        lambda: document.delete_marker_edits([early]),
+    ):
+        before = document.state.sitting
+        with pytest.raises(ProtectedError, match="FHD is protected in frames"):
+            change()
+        assert document.state.sitting is before
+    # Beside it in time, and other markers, are free.
+    document.clear_markers(name, ["LFHD"], 0, 4)
+    document.exchange_markers(name, "LBHD", "RBHD", 0, 60)
+    document.unprotect_markers(name, ["LFHD"], 10, 60)
+    assert document.markers_protected(name) == (
+        Declared("LFHD", 4, 10), Declared("RFHD", 4, 15),
+    )  # fmt: skip
+    fill(document, name, "rigid", Declared("LFHD", 12, 13))
+
+
+def test_without_markers_all_are_protected_and_a_session_keeps_it(sitting, tmp_path) -> None:
+    document, name = sitting
+    document.protect_markers(name, [], 30, 50)
+    with pytest.raises(ProtectedError, match="FREE is protected in frames 40 to 44"):
+        fill(document, name, "straight", Declared("FREE", 40, 44))
+    with pytest.raises(MocapError, match="no marker Hoof"):
+        document.protect_markers(name, ["Hoof"], 0, 5)
+    document.unprotect_markers(name, ["FREE"], 0, 60)
+    kept = document.markers_protected(name)
+    assert {one.row for one in kept} == set(LABELS) - {"FREE"}
+    session_file.save(document, tmp_path / "a.mocapstudio")
+    again = session_file.load(tmp_path / "a.mocapstudio")
+    assert again.markers_protected(name) == kept
+    document.undo()
+    assert document.markers_protected(name) == tuple(
+        Declared(one, 30, 50) for one in sorted(LABELS)
+    )

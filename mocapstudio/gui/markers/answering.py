@@ -63,6 +63,8 @@ class Answering(QObject):
             "markers-exchange": shown.marker is not None and len(shown.gaps.markers) > 1,
             "markers-clear": shown.marker is not None,
             "markers-take-back": bool(working.edits_here()),
+            "markers-protect": shown.span is not None,
+            "markers-unprotect": bool(shown.protected),
             "zoom-flag": shown.span is not None, "loop": shown.span is not None or shown.loop,
             "deselect": shown.marker is not None or shown.span is not None,
         }  # fmt: skip
@@ -78,6 +80,8 @@ class Answering(QObject):
             "markers-exchange": filing.ask_exchange,
             "markers-clear": working.clear,
             "markers-take-back": working.take_back,
+            "markers-protect": working.protect,
+            "markers-unprotect": working.unprotect,
             "markers-solve": filing.ask_solve,
             "markers-compare": filing.compare,
             "export": filing.ask_export,

@@ -8,6 +8,7 @@ from typing import Any
 from PySide6.QtCore import QObject, Signal
 
 from mocapstudio.gui.document import DocumentBridge
+from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.markers import MarkerTake
 from mocapstudio.review.marker_gaps import Span, TakeGaps, take_gaps
 from mocapstudio.review.marker_model import MarkerEdit, MarkerPerformer
@@ -28,6 +29,8 @@ class MarkersShown:
         The take as it was read and with its edits, or None.
     edits
         Its edits, in the order in which they are done.
+    protected
+        Markers × spans that nothing may change.
     gaps
         What is missing of the result.
     frame
@@ -48,6 +51,7 @@ class MarkersShown:
     source: MarkerTake | None = None
     result: MarkerTake | None = None
     edits: tuple[MarkerEdit, ...] = ()
+    protected: tuple[Declared, ...] = ()
     gaps: TakeGaps = NOTHING
     frame: int = 0
     marker: str | None = None
@@ -159,6 +163,7 @@ class MarkersBridge(QObject):
             "source": there.take,
             "result": result,
             "edits": document.marker_edits(performer),
+            "protected": document.markers_protected(performer),
         }
         if result is not shown.result:
             changes["gaps"] = take_gaps(result)

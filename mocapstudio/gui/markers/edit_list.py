@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QFrame, QScrollArea, QVBoxLayout, QWidget
 from mocapstudio.gui import wording
 from mocapstudio.gui.document import UiState
 from mocapstudio.gui.markers.bridge import MarkersBridge, MarkersShown
+from mocapstudio.gui.markers.working import Working
 from mocapstudio.gui.widgets.cards import icon_button, make_card
 from mocapstudio.gui.widgets.parts import Hint, label
 from mocapstudio.motion.markers import MarkerTake
@@ -21,13 +22,13 @@ _MOST_CARDS = 60
 class EditList(QScrollArea):
     """The edits of the take, latest first; those made together in one card."""
 
-    def __init__(self, bridge: MarkersBridge) -> None:
+    def __init__(self, bridge: MarkersBridge, working: Working) -> None:
         super().__init__()
         self.setObjectName("markers-edits")
         self.setWidgetResizable(True)
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self._bridge = bridge
+        self._bridge, self._working = bridge, working
         self._hint = Hint(self, "markers-edits-hint")
         bridge.changed.connect(self._follow)
         # Not from within the change of style: cards must not go while Qt walks over them.
@@ -81,19 +82,12 @@ class EditList(QScrollArea):
             "Switch the edit on again" if muted else "Switch the edit off",
             "marker-edit-mute",
         )
-        mute.clicked.connect(lambda: self._mute(edits, not muted))
+        mute.clicked.connect(lambda: self._working.mute(edits, not muted))
         delete = icon_button("delete", "Delete the edit", "marker-edit-delete")
-        ids = [edit.id for edit in edits]
-        delete.clicked.connect(lambda: self._bridge.desk.document.delete_marker_edits(ids))
+        delete.clicked.connect(lambda: self._working.delete(edits))
         row.addWidget(mute)
         row.addWidget(delete)
         return card
-
-    def _mute(self, edits: Sequence[MarkerEdit], muted: bool) -> None:
-        document = self._bridge.desk.document
-        with document.group(f"{'Mute' if muted else 'Unmute'} {len(edits)} edits"):
-            for edit in edits:
-                document.mute_marker_edit(edit.id, muted)
 
 
 def _how(edit: MarkerEdit) -> str:

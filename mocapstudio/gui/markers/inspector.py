@@ -37,7 +37,7 @@ class MarkersInspector(QFrame):
         self._tabs.tabBar().setDrawBase(False)
         self._gap = GapPage(bridge, working, actions)
         self._tabs.addTab(self._gap, "Gap")
-        self._tabs.addTab(EditList(bridge), "Edits")
+        self._tabs.addTab(EditList(bridge, working), "Edits")
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self._tabs)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QPointF, QRectF
-from PySide6.QtGui import QColor, QImage, QPainter, QPen
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QBrush, QColor, QImage, QPainter, QPen
 
 from mocapstudio.gui import theme as themes
 from mocapstudio.gui.markers.lane_drawing import Cell, cell_colour, pooled
@@ -14,6 +16,7 @@ from mocapstudio.gui.plots.layers import Layer
 from mocapstudio.gui.plots.rows import Group, RowLayout
 from mocapstudio.gui.plots.time_plot import TimePlot
 from mocapstudio.gui.plots.time_range import TimeRange
+from mocapstudio.motion.declared import Declared
 
 
 class LanePlot(TimePlot):
@@ -32,6 +35,7 @@ class LanePlot(TimePlot):
         self._order: list[int] = []
         self._marker: str | None = None
         self._span: tuple[int, int] | None = None
+        self._protected: Sequence[Declared] = ()
         super().__init__(time_range, axis="top")
         self.setObjectName("markers-lanes-plot")
         self._picture = self.add_layer(Layer(self._draw_cells, cached=True), -1)
@@ -53,6 +57,12 @@ class LanePlot(TimePlot):
         """Mark the chosen marker and span."""
         if (marker, span) != (self._marker, self._span):
             self._marker, self._span = marker, span
+            self._marks.refresh()
+
+    def protect(self, protected: Sequence[Declared]) -> None:
+        """Mark what nothing may change."""
+        if protected != self._protected:
+            self._protected = protected
             self._marks.refresh()
 
     def marker_at(self, at: QPointF) -> str | None:
@@ -87,10 +97,16 @@ class LanePlot(TimePlot):
 
     def _draw_marks(self, p: QPainter, area: QRectF) -> None:
         look = themes.current()
+        height = max(self.rows.row_height - 1, 2)
+        for one in self._protected:
+            top = area.top() + float(self.rows.tops[self.rows.index[one.row]])
+            left, right = self.x_of(one.start - 0.5), self.x_of(one.end - 0.5)
+            box = QRectF(left, top, max(right - left, 2), height)
+            p.fillRect(box, colours.faded(look.protected, 0.35))
+            p.fillRect(box, QBrush(QColor(look.protected), Qt.BrushStyle.BDiagPattern))
         if self._marker not in self.rows.index:
             return
         top = area.top() + float(self.rows.tops[self.rows.index[self._marker]])
-        height = max(self.rows.row_height - 1, 2)
         p.setPen(QPen(QColor(look.accent), 1))
         row = QRectF(area.left(), top - 1, area.width() - 1, height + 1)
         p.drawLine(row.topLeft(), row.topRight())

@@ -77,7 +77,7 @@ class LanesView(NativeView):
     def _follow(self, old: MarkersShown, new: MarkersShown) -> None:
         if old.result is not new.result:
             self._show(new)
-        elif (old.marker, old.span) != (new.marker, new.span):
+        elif (old.marker, old.span, old.protected) != (new.marker, new.span, new.protected):
             self._mark(new)
         if old.frame != new.frame:
             self.plot.set_frame(new.frame)
@@ -103,6 +103,7 @@ class LanesView(NativeView):
 
     def _mark(self, shown: MarkersShown) -> None:
         self.plot.mark(shown.marker, shown.span)
+        self.plot.protect(shown.protected)
         chosen = frozenset() if shown.marker is None else frozenset({shown.marker})
         worst = [one.label for one in shown.gaps.markers if one.gaps]
         self.names.set_marks(chosen, worst, None, edits=False)
@@ -120,7 +121,8 @@ class LanesView(NativeView):
         self._bridge.set(marker=marker, span=self.plot.span_between(begin.x(), end.x()))
 
     def _hover(self, at: QPointF | None) -> None:
-        take, gaps = self._bridge.shown.result, self._bridge.shown.gaps
+        shown = self._bridge.shown
+        take, gaps = shown.result, shown.gaps
         name = None if at is None or not self.plot.area.contains(at) else self.plot.marker_at(at)
         if at is None or name is None or take is None:
             QToolTip.hideText()
@@ -128,6 +130,8 @@ class LanesView(NativeView):
         frame = self.plot.whole_frame_at(at.x())
         words = f"{name} · {_WORDS[self.plot.cell_at(name, frame)]}"
         span = gaps.span_at(name, frame)
+        if any(one.row == name and one.start <= frame < one.end for one in shown.protected):
+            words += " · protected"
         words += f"\n{wording.span(take, *span)}" if span is not None else ""
         QToolTip.showText(self.plot.viewport().mapToGlobal(at.toPoint()), words, self.plot)
 

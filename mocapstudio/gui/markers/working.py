@@ -47,6 +47,11 @@ class Working(QObject):
             return
         span = Declared(shown.marker, *gap)
         performer = shown.performer
+        for one in shown.protected:
+            if one.row == span.row and one.start < gap[1] and gap[0] < one.end:
+                words = f"{one.row} is protected there: Shift+U lifts the protection."
+                self._messages.tell(words)
+                return
 
         def unfilled() -> MarkerTake:
             return self._bridge.desk.document.unfilled(performer, (span,))
@@ -57,7 +62,9 @@ class Working(QObject):
         """Fill every gap up to the length that is set."""
         shown = self._bridge.shown
         spans = [Declared(one.marker, one.start, one.end) for one in self.short_gaps()]
-        if shown.result is not None and spans:
+        if not spans:
+            self._messages.tell("What is protected is not filled: no other gap is as short.")
+        elif shown.result is not None:
             performer = shown.performer
 
             def result() -> MarkerTake:
@@ -67,37 +74,100 @@ class Working(QObject):
             self._start(result, METHODS[0].name, spans, words, {"longest": shown.longest})
 
     def short_gaps(self) -> Sequence[GapSpan]:
-        """Return the gaps that `fill_all` would fill."""
-        return self._bridge.shown.gaps.up_to(self._bridge.shown.longest)
+        """Return the gaps that `fill_all` would fill: those that nothing protects."""
+        closed = self._bridge.shown.protected
+        return [
+            one
+            for one in self._bridge.shown.gaps.up_to(self._bridge.shown.longest)
+            if not any(
+                row.row == one.marker and one.start < row.end and row.start < one.end
+                for row in closed
+            )
+        ]
 
     def clear(self) -> None:
         """Take the chosen marker's samples away in the chosen span, or at the play head."""
         shown = self._bridge.shown
         if shown.marker is not None:
-            start, end = shown.span or (shown.frame, shown.frame + 1)
-            self._bridge.desk.document.clear_markers(shown.performer, [shown.marker], start, end)
+            name, span = shown.marker, self._span()
+            document = self._bridge.desk.document
+            doing = f"{name} could not be taken away"
+            self._try(doing, lambda: document.clear_markers(shown.performer, [name], *span))
 
     def exchange(self, other: str, start: int, end: int) -> None:
         """Exchange the chosen marker's label with another's over [start, end)."""
         shown = self._bridge.shown
         if shown.marker is not None:
-            document = self._bridge.desk.document
-            document.exchange_markers(shown.performer, shown.marker, other, start, end)
-            self._messages.tell(f"Exchanged {shown.marker} and {other} in {end - start} frames.")
+            name, document = shown.marker, self._bridge.desk.document
+            doing = f"{name} and {other} could not be exchanged"
+            if self._try(
+                doing,
+                lambda: document.exchange_markers(shown.performer, name, other, start, end),
+            ):
+                self._messages.tell(f"Exchanged {name} and {other} in {end - start} frames.")
+
+    def mute(self, edits: Sequence[MarkerEdit], muted: bool) -> None:
+        """Switch edits off, or on again, as one step."""
+        document = self._bridge.desk.document
+
+        def do() -> None:
+            with document.group(f"{'Mute' if muted else 'Unmute'} {len(edits)} edits"):
+                for edit in edits:
+                    document.mute_marker_edit(edit.id, muted)
+
+        self._try("The edit could not be switched", do)
+
+    def delete(self, edits: Sequence[MarkerEdit]) -> None:
+        """Take edits back, as one step."""
+        ids, document = [edit.id for edit in edits], self._bridge.desk.document
+        self._try("The edit could not be taken back", lambda: document.delete_marker_edits(ids))
+
+    def protect(self) -> None:
+        """Protect the chosen marker, or all of them, in the chosen span."""
+        shown, document = self._bridge.shown, self._bridge.desk.document
+        if shown.source is not None and shown.span is not None:
+            span, rows = shown.span, self._rows()
+            doing = "This could not be protected"
+            if self._try(doing, lambda: document.protect_markers(shown.performer, rows, *span)):
+                self._messages.tell("Nothing will change there. Shift+U lifts the protection.")
+
+    def unprotect(self) -> None:
+        """Lift the protection of the chosen marker in the chosen span, or everywhere."""
+        shown, document = self._bridge.shown, self._bridge.desk.document
+        if shown.source is not None:
+            span, rows = shown.span or (0, shown.source.frames), self._rows()
+            doing = "The protection could not be lifted"
+            self._try(doing, lambda: document.unprotect_markers(shown.performer, rows, *span))
+
+    def _rows(self) -> tuple[str, ...]:
+        marker = self._bridge.shown.marker
+        return () if marker is None else (marker,)
+
+    def _span(self) -> tuple[int, int]:
+        shown = self._bridge.shown
+        return shown.span or (shown.frame, shown.frame + 1)
+
+    def _try(self, doing: str, do: Callable[[], object]) -> bool:
+        try:
+            do()
+        except MocapError as error:
+            self._messages.complain(error, doing)
+            return False
+        return True
 
     def edits_here(self) -> list[MarkerEdit]:
         """Edits that change the chosen marker in the chosen span, or at the play head."""
         shown = self._bridge.shown
         if shown.marker is None:
             return []
-        start, end = shown.span or (shown.frame, shown.frame + 1)
+        start, end = self._span()
         return [one for one in shown.edits if one.touches(shown.marker, start, end)]
 
     def take_back(self) -> None:
         """Delete the last edit of the chosen marker here, whatever came after it elsewhere."""
         here = self.edits_here()
         if here:
-            self._bridge.desk.document.delete_marker_edits([here[-1].id])
+            self.delete(here[-1:])
 
     def _start(
         self,
