@@ -75,6 +75,26 @@ def wait_for_edits(hands: Hands, count: int) -> None:
     hands.see(lambda: not hands.window.jobs.running and len(bridge.shown.edits) == count)
 
 
+def check_written(take, out, edited: np.ndarray, declared: set[Declared]) -> None:
+    """Check that the file holds what was edited, and nothing else that is new."""
+    (source,), _ = formats.read_any(take)
+    (again,), _ = formats.read_any(out)
+    allowed = np.zeros_like(source.missing)
+    for one in declared:
+        allowed[one.start : one.end, source.index[one.row]] = True
+    rest = ~allowed
+    assert np.array_equal(again.positions[rest], source.positions[rest], equal_nan=True)
+    assert np.allclose(again.positions, edited, atol=1e-6, equal_nan=True)
+    told = json.loads(out.with_name(f"{out.stem}.provenance.json").read_text())
+    assert {(one["marker"], one["start"], one["end"]) for one in told["changes"]} == {
+        (one.row, one.start, one.end) for one in declared
+    }
+    before, after = take.read_bytes(), out.read_bytes()
+    assert len(before) == len(after)
+    differing = sum(a != b for a, b in zip(before, after, strict=True))
+    assert 0 < differing <= 16 * allowed.sum()
+
+
 def test_gaps_are_filled_labels_exchanged_and_nothing_else_is_written(user, take, tmp_path):
     hands, workspace = user, opened(user, take)
     (source,), _ = formats.read_any(take)
@@ -135,7 +155,6 @@ def test_gaps_are_filled_labels_exchanged_and_nothing_else_is_written(user, take
     out = tmp_path / "mended.c3d"
     hands.answer_file_dialog(out)
     hands.see(lambda: (tmp_path / "mended.provenance.json").exists())
-    (again,), _ = formats.read_any(out)
     declared = {
         Declared(first[0], *first[1]),
         Declared("L.Ankle", start, end),
@@ -143,21 +162,9 @@ def test_gaps_are_filled_labels_exchanged_and_nothing_else_is_written(user, take
         Declared(other, *swept),
     }
     assert set(document.marker_declared(bridge.shown.performer)) == declared
-    allowed = np.zeros_like(source.missing)
-    for one in declared:
-        allowed[one.start : one.end, source.index[one.row]] = True
-    rest = ~allowed
-    assert np.array_equal(again.positions[rest], source.positions[rest], equal_nan=True)
-    assert np.allclose(again.positions, edited.positions, atol=1e-6, equal_nan=True)
+    check_written(take, out, edited.positions, declared)
+    (again,), _ = formats.read_any(out)
     assert not again.missing[start:end, marker].any()
-    told = json.loads((tmp_path / "mended.provenance.json").read_text())
-    assert {(one["marker"], one["start"], one["end"]) for one in told["changes"]} == {
-        (one.row, one.start, one.end) for one in declared
-    }
-    before, after = take.read_bytes(), out.read_bytes()
-    assert len(before) == len(after)
-    differing = sum(a != b for a, b in zip(before, after, strict=True))
-    assert 0 < differing <= 16 * allowed.sum()
 
 
 def test_all_short_gaps_are_filled_at_once_and_taken_back_together(user, take):
