@@ -24,10 +24,8 @@ from mocapstudio.motion.progress import Progress
 _POINTS = ("heel", "ball", "toe", "palm")
 _MOST_JERK, _NO_MORE = 1.2, 1.02
 """Times the take's own 99th percentile; times what there was before."""
-_NOTE = (
-    "frames in contact; within 1/30 s of a true edge nothing is scored, but for 'strict'; the"
-    " thresholds of the peers are chosen on {}"
-)
+_NOTE = "frames in contact; within 1/30 s of a true edge nothing is scored, but for 'strict'"
+_CHOSEN = "; the thresholds of the peers are chosen on other takes"
 
 
 def contacts(
@@ -111,7 +109,8 @@ def _measured(path: Path) -> list[SlideRow]:
 
 
 def _detection_table(title: str, takes: str, scores: Sequence[ContactScores]) -> Table:
-    head = ("method", "F1", "recall", "precision", "strict F1", *_POINTS, "worst take")
+    points = [point for point in _POINTS if any(point in one.points for one in scores)]
+    head = ("method", "F1", "recall", "precision", "strict F1", *points, "worst take")
     rows = tuple(
         (
             one.name,
@@ -119,12 +118,13 @@ def _detection_table(title: str, takes: str, scores: Sequence[ContactScores]) ->
             number(one.tolerant.recall, 3),
             number(one.tolerant.precision, 3),
             number(one.strict.f1, 3),
-            *(number(one.points.get(point, Tally()).f1, 3) for point in _POINTS),
+            *(number(one.points.get(point, Tally()).f1, 3) for point in points),
             f"{number(one.worst[0], 3)} {one.worst[1]}",
         )
         for one in scores
     )
-    return Table(title, head, rows, f"{_NOTE.format('other takes')}; measured on {takes}")
+    chosen = _CHOSEN if len(scores) > 1 else ""
+    return Table(title, head, rows, f"{_NOTE}{chosen}; measured on {takes}")
 
 
 def _slide_table(folder: str, rows: Sequence[SlideRow]) -> Table:
