@@ -107,14 +107,26 @@ def following(
         answers[i] = answers[i - 1] if found is None else found.at
     if aligner.frames == 0:
         raise MocapError(f"{source.name}: too little of it is seen to be followed")
-    late = len(poses) - aligner.frames
+    return _in_own_frames(aligner, (distances, accumulated), answers, (reference, source), rate)
+
+
+def _in_own_frames(
+    aligner: OnlineAligner,
+    matrices: tuple[F32, F32],
+    answers: NDArray[np.int64],
+    recordings: tuple[Recording, Recording],
+    rate: float,
+) -> OnlinePath:
+    reference, source = recordings
+    late = len(answers) - aligner.frames
     each = float(reference.rate) / rate
-    own = np.array([reference.span[0], start]), np.array([each, step])
+    step = float(source.rate) / rate
+    own = np.array([reference.span[0], source.span[0]]), np.array([each, step])
     pairs = (aligner.path() + np.array([0, late])) * own[1] + own[0]
-    told = np.stack([answers, np.arange(len(poses))], axis=1) * own[1] + own[0]
+    told = np.stack([answers, np.arange(len(answers))], axis=1) * own[1] + own[0]
     return OnlinePath(
-        np.ascontiguousarray(distances.T),
-        np.ascontiguousarray(accumulated.T),
+        np.ascontiguousarray(matrices[0].T),
+        np.ascontiguousarray(matrices[1].T),
         np.rint(pairs).astype(np.int64),
         np.rint(told).astype(np.int64),
         (float(own[0][0]), each),
