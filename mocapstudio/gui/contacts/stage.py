@@ -208,5 +208,6 @@ class ContactsStage(Viewport):
 
     def _drag_words(self, contact: Contact) -> str:
         alone = ", with Ctrl this point alone" if self.holding.company(contact) else ""
-        whole = "drag to move the foot" if alone else "drag to move"
+        end = "hand" if contact.point == "palm" else "foot"
+        whole = f"drag to move the {end}" if alone else "drag to move"
         return f"{whole}{alone}; X Y Z lock an axis"
