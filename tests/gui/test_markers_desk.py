@@ -349,6 +349,7 @@ def test_what_is_protected_stays_as_it_is(user, take):
     shown = bridge.shown
     hands.press("P", SHIFT)
     assert bridge.shown.protected == (Declared(shown.marker, *shown.span),)
+    assert hands.text("markers-words").endswith("protected")
     hands.press("1")
     assert told[-1] == f"{shown.marker} is protected there: Shift+U lifts the protection."
     hands.key(Qt.Key.Key_Delete)

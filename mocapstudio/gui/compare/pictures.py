@@ -135,19 +135,27 @@ class PicturesView(NativeView):
             self._following = True
             self.time_range.set_frames(frames_wide(comparison, true_speed))
             self._follow_range(state)
-            if state.source is not None:
-                take = state.source.take
-                self.difference.time_axis.set_clock(float(take.rate), take.first_frame)
-            if state.reference is not None:
-                take = state.reference
-                self.heat.reference_axis.set_clock(float(take.rate), take.first_frame)
+            self._set_clocks(state)
             self._margin.tell(comparison.source, comparison.reference)
+        elif state.source is not None:
+            self._following = True
+            self.time_range.set_frames(state.source.take.frames)
+            self._following = False
+            self._set_clocks(state)
         self._hint.say(_waiting(state))
         self.heat.show_comparison(state.linked, true_speed)
         gap = None
         if comparison is not None:
             gap = comparison.misalignment if true_speed else comparison.misalignment_relative
         self.misalignment.show_curve(comparison, gap)
+
+    def _set_clocks(self, state: ComparingState) -> None:
+        if state.source is not None:
+            take = state.source.take
+            self.difference.time_axis.set_clock(float(take.rate), take.first_frame)
+        if state.reference is not None:
+            take = state.reference
+            self.heat.reference_axis.set_clock(float(take.rate), take.first_frame)
 
     def _show_row(self, state: ComparingState) -> None:
         comparison = state.comparison

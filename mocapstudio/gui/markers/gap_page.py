@@ -121,9 +121,16 @@ def _words_of(shown: MarkersShown) -> str:
     if gap is not None:
         what = "Missing" if gap in one.gaps else "Filled"
         ends = " · touches the take's end" if gap[0] == 0 or gap[1] == take.frames else ""
-        return f"{what} {wording.span(take, *gap)}{ends}"
+        return f"{what} {wording.span(take, *gap)}{ends}{_kept(shown, *gap)}"
     if shown.span is not None:
-        return f"Chosen: {wording.span(take, *shown.span)}"
+        return f"Chosen: {wording.span(take, *shown.span)}{_kept(shown, *shown.span)}"
     if not one.gaps:
         return "Seen in every frame."
     return f"Seen here; {len(one.gaps)} gap{'' if len(one.gaps) == 1 else 's'} elsewhere."
+
+
+def _kept(shown: MarkersShown, start: int, end: int) -> str:
+    touched = (
+        one.row == shown.marker and one.start < end and start < one.end for one in shown.protected
+    )
+    return " · protected" if any(touched) else ""
