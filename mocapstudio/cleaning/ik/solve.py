@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
+from threadpoolctl import ThreadpoolController
 
 from mocapstudio.cleaning.ik import kernels
 from mocapstudio.cleaning.ik.freedom import Freedom
@@ -23,6 +24,8 @@ from mocapstudio.cleaning.ik.posed import Posed, Window
 Array = NDArray[np.float64]
 
 _FIRST_DAMPING = 1e-6
+_BLAS = ThreadpoolController()
+"""Knows scipy's libraries, which are loaded by now; asking for them anew takes milliseconds."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +119,9 @@ def solve(
     damping, growth = _FIRST_DAMPING, 2.0
     band, slope = _normal(problem, fixed, unknowns, rows)
     for step in range(1, most_steps + 1):
-        move = _damped_step(band, slope, damping)
+        # Blocks are small: threads waiting for each other are slow where others want the cores.
+        with _BLAS.limit(limits=1, user_api="blas"):
+            move = _damped_step(band, slope, damping)
         if move is None:
             damping, growth = damping * growth, growth * 2
             continue
