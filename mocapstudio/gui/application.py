@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
-from types import TracebackType
+from types import FrameType, TracebackType
 from typing import TYPE_CHECKING
 
+from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 
 from mocapstudio.gui import icons, settings, theme
@@ -20,6 +23,8 @@ if TYPE_CHECKING:
 
 # Threads that hold the interpreter give it to the desk after this many seconds.
 _SWITCH = 0.002
+
+_INTERRUPTED = 130
 
 
 def run(
@@ -56,16 +61,17 @@ def run(
     from mocapstudio.gui.main_window import MainWindow
     from mocapstudio.review.manner import Manner
 
-    window = MainWindow()
-    _catch_faults(window.messages.complain)
-    window.start()
-    manner = Manner(options, renamed or {})
-    window.open(list(paths), list(context), list(partners), manner)
-    if live is not None:
-        from mocapstudio.gui.compare.live_opening import open_live
+    with _ending_at_interrupts():
+        window = MainWindow()
+        _catch_faults(window.messages.complain)
+        window.start()
+        manner = Manner(options, renamed or {})
+        window.open(list(paths), list(context), list(partners), manner)
+        if live is not None:
+            from mocapstudio.gui.compare.live_opening import open_live
 
-        open_live(window, live)
-    code = app.exec()
+            open_live(window, live)
+        code = app.exec()
     sys.excepthook = sys.__excepthook__
     return code
 
@@ -100,14 +106,30 @@ def _check_display() -> None:
         raise MocapError("no display: neither DISPLAY nor WAYLAND_DISPLAY is set")
 
 
+@contextmanager
+def _ending_at_interrupts() -> Iterator[None]:
+    """End the desk at Ctrl-C without an exception, at which Qt or VTK would end the process."""
+    before = signal.getsignal(signal.SIGINT)
+    if before is signal.SIG_IGN:
+        yield
+        return
+
+    def end(_number: int, _frame: FrameType | None) -> None:
+        # By a timer: what is said before the event loop runs would be lost.
+        QTimer.singleShot(0, lambda: QApplication.exit(_INTERRUPTED))
+
+    signal.signal(signal.SIGINT, end)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
 def _catch_faults(complain: Callable[[BaseException, str], None]) -> None:
     """Show exceptions that nobody caught; the desk stays open."""
     told: set[str] = set()
 
     def hook(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
-        if issubclass(kind, KeyboardInterrupt):
-            QApplication.exit(130)
-            return
         if isinstance(error, MocapError):
             complain(error, "This could not be done")
             return

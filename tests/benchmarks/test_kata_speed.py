@@ -8,7 +8,6 @@ import pytest
 from mocapstudio.evaluation.kata_benchmark import KATA_FRAMES, KATA_MARKERS
 from mocapstudio.similarity.alignment.costs import PoseDistances
 from mocapstudio.similarity.alignment.dtw import align
-from mocapstudio.similarity.alignment.frugal import align_frugally
 
 
 @pytest.fixture(scope="module")
@@ -20,9 +19,4 @@ def poses() -> tuple[np.ndarray, np.ndarray]:
 
 def test_whole_matrix(benchmark, poses) -> None:
     found = benchmark(lambda: align(PoseDistances(*poses)))
-    assert len(found.path) >= KATA_FRAMES
-
-
-def test_frugally(benchmark, poses) -> None:
-    found = benchmark(lambda: align_frugally(PoseDistances(*poses)))
     assert len(found.path) >= KATA_FRAMES

@@ -87,8 +87,9 @@ class Hands:
         """Click into a text field, replace what is in it, and press Enter."""
         field = self.find(name)
         self._hit(field, QPoint(8, field.height() // 2))
+        # A window that has just opened is given the focus a moment later.
+        self.see(lambda: QApplication.focusWidget() is not None)
         target = QApplication.focusWidget()
-        assert target is not None
         QTest.keyClick(target, Qt.Key.Key_A, CTRL)
         QTest.keyClick(target, Qt.Key.Key_Delete)
         QTest.keyClicks(target, text)
