@@ -154,3 +154,11 @@ def compare_hands(window, qtbot):
     # What one test leaves open must not stand in the way of the next.
     while (modal := QApplication.activeModalWidget()) is not None:
         modal.close()
+
+
+@pytest.fixture(scope="session")
+def slipping(tmp_path_factory) -> Path:
+    """A walk that begins standing; the whole body slips along x at 0.15 m/s."""
+    from contacts_user import write_slipping
+
+    return write_slipping(tmp_path_factory.mktemp("slipping") / "walk.bvh")
