@@ -25,12 +25,12 @@ from mocapstudio.review.state import DocumentState
 _WIDTHS = {
     Column.RANK: 36,
     Column.TIME: 72,
-    Column.FRAME: 46,
+    Column.FRAME: 52,
     Column.SCORE: 46,
     Column.KIND: 92,
     Column.VERDICT: 84,
 }
-_JOINT_WIDTH = 84
+_JOINT_WIDTH = 90
 _DISPENSABLE = (Column.FRAME, Column.KIND)
 """Left out where the queue is too narrow for all columns, the first one first."""
 
