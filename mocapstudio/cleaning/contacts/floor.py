@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapstudio.cleaning.contacts.floor_plane import Rest, fit_plane
-from mocapstudio.cleaning.contacts.speeds import one_sided, runs, smoothed
+from mocapstudio.cleaning.contacts.speeds import one_sided, smoothed
+from mocapstudio.motion.runs import runs
 
 Array = NDArray[np.float64]
 

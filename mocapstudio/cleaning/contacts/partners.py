@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 from mocapstudio.cleaning.contacts.anatomy import extremities, leg_length
 from mocapstudio.cleaning.contacts.model import ContactPoint, Following
 from mocapstudio.cleaning.contacts.points import contact_points, point_positions
-from mocapstudio.cleaning.contacts.speeds import one_sided, runs, smoothed
+from mocapstudio.cleaning.contacts.speeds import one_sided, smoothed
 from mocapstudio.cleaning.contacts.states import log_speed, posterior
 from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.kinematics import take_pose
+from mocapstudio.motion.runs import runs
 from mocapstudio.motion.take import Take
 
 Array = NDArray[np.float64]

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
 from mocapstudio.cleaning.contacts.model import Contact, Floor
-from mocapstudio.cleaning.contacts.speeds import runs
 from mocapstudio.motion import rotations as rot
+from mocapstudio.motion.runs import runs
 
 Array = NDArray[np.float64]
 

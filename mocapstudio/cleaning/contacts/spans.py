@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapstudio.cleaning.contacts.speeds import runs
+from mocapstudio.motion.runs import runs
 
 Array = NDArray[np.float64]
 

@@ -37,10 +37,3 @@ def one_sided(positions: Array, rate: float) -> Array:
     before = np.concatenate([np.repeat(step[:1], reach, axis=0), step])
     slower = np.linalg.norm(before, axis=-1) < np.linalg.norm(after, axis=-1)
     return np.where(slower[..., None], before, after)
-
-
-def runs(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Half-open spans in which a (F,) mask is True."""
-    edges = np.diff(np.concatenate([[0], mask.astype(np.int8), [0]]))
-    starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
-    return [(int(a), int(b)) for a, b in zip(starts, ends, strict=True)]

@@ -21,6 +21,7 @@ from mocapstudio.motion import rotations as rot
 from mocapstudio.motion.declared import Declared
 from mocapstudio.motion.errors import MocapError
 from mocapstudio.motion.kinematics import take_pose
+from mocapstudio.motion.runs import runs
 from mocapstudio.motion.take import Take
 from mocapstudio.motion.topology import topology
 
@@ -78,8 +79,7 @@ def keep_ends(before: Take, after: Take, ranges: JointRanges | None = None) -> K
     for joint in ends:
         away = np.linalg.norm(moved[0][:, joint] - was[0][:, joint], axis=1)
         away += rot.angle(moved[1][:, joint], was[1][:, joint])
-        runs = _runs(away > _MOVED)
-        departures += [_bring_back(after, was, joint, span, ranges) for span in runs]
+        departures += [_bring_back(after, was, joint, span, ranges) for span in runs(away > _MOVED)]
     kept = with_departures(after, departures)
     now = take_pose(kept)[0]
     gaps = {
@@ -96,11 +96,6 @@ def _ends_outside(before: Take, after: Take) -> list[int]:
     touched = set(changed.tolist())
     ends = [*extremities(before.skeleton, "leg"), *extremities(before.skeleton, "arm")]
     return [e.joint for e in ends if not touched & set(parts.limb_of(e.joint).joints)]
-
-
-def _runs(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
-    return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 
 
 def _bring_back(
